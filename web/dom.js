@@ -8,18 +8,18 @@
  * @returns {HTMLElementTagNameMap[K]}
  */
 export function element(tag, attributes = {}, ...children) {
-  const made = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  made.append(...children);
-  return made;
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...children);
+  return node;
 }
 
-/** @param {string} text @param {string} label @param {() => void} press @param {boolean} [disabled] */
-export function button(text, label, press, disabled = false) {
-  const made = element("button", { type: "button", "aria-label": label, title: label }, text);
-  made.disabled = disabled;
-  made.addEventListener("click", press);
-  return made;
+/** @param {string} text @param {string} label @param {() => void} onClick @param {boolean} [disabled] */
+export function button(text, label, onClick, disabled = false) {
+  const node = element("button", { type: "button", "aria-label": label, title: label }, text);
+  node.disabled = disabled;
+  node.addEventListener("click", onClick);
+  return node;
 }
 
 /** Replaces the children of an element. @param {Element} parent @param {...(Node | string)} children */
@@ -39,8 +39,8 @@ export function byId(id) {
   return /** @type {T} */ (found);
 }
 
-/** Sets a text only if it changed, so that live regions speak once. @param {Element} node @param {string} text */
-export function say(node, text) {
+/** Sets a text if it differs, so that screen readers announce it only once. @param {Element} node @param {string} text */
+export function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
@@ -58,7 +58,7 @@ export function flash(node) {
 }
 
 /** Fills a select. @param {HTMLSelectElement} select @param {[string, string][]} options @param {string} value */
-export function options(select, options, value) {
+export function setOptions(select, options, value) {
   const key = JSON.stringify(options);
   if (select.dataset.options !== key) {
     select.dataset.options = key;
@@ -67,9 +67,11 @@ export function options(select, options, value) {
   if (select.value !== value) select.value = value;
 }
 
-/** Loads the style of a part of the page; errors are ignored. @param {"study" | "panel" | "live"} part @returns {Promise<void>} */
-export function style(part) {
-  const link = element("link", { rel: "stylesheet", href: byId("main").dataset[`${part}Style`] ?? "" });
+/** Loads the style sheet of a part of the page. Without network the part has no style. @param {"study" | "panel" | "live"} part @returns {Promise<void>} */
+export function loadStyle(part) {
+  const href = byId("main").dataset[`${part}Style`];
+  if (!href) throw new Error(`the page has no style sheet of the part ${part}`);
+  const link = element("link", { rel: "stylesheet", href });
   return new Promise((resolve) => {
     for (const end of ["load", "error"]) link.addEventListener(end, () => resolve());
     document.head.append(link);

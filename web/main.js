@@ -4,12 +4,14 @@
  *
  *     pkg -> pkg-tools -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
+
 import { byId } from "./dom.js";
 import { Engine, unlessDropped } from "./engine/engine.js";
 import { preloadTools } from "./engine/wasm.js";
 import { createForm } from "./form/form.js";
+import { problemText } from "./form/problem_places.js";
 import { createRemedyRequests } from "./form/remedy_requests.js";
-import { samples, takeSchema } from "./form/schema.js";
+import { samples, setSchema } from "./form/schema.js";
 import { createCard } from "./help/card.js";
 import { createGuide, offerGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
@@ -23,9 +25,17 @@ import { createPanes } from "./shell/panes.js";
 import { createRunner } from "./shell/runner.js";
 import { createSavedExperiments } from "./shell/saved_experiments.js";
 import { offerNewer, savedWork } from "./shell/saved_work.js";
-import { listedRecordings, loadScenario, saveGood, saveHistory, saveScenario, setAside } from "./shell/storage.js";
+import {
+  listedRecordings,
+  loadScenario,
+  saveHistory,
+  saveLastValid,
+  savePrevious,
+  saveScenario,
+} from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
 import { createTheme } from "./shell/theme.js";
+import { errorMessage } from "./state/error_message.js";
 import { initial } from "./state/initial.js";
 import { blockedBy, isStale } from "./state/queries.js";
 import { EARLIER } from "./state/result.js";
@@ -85,40 +95,40 @@ function follow(before) {
     runner.validate();
     // The initial scenario is not saved.
     if (before && state.origin === "own") {
-      // An edited link or preset becomes own work.
-      if (before.origin !== "own") setAside(JSON.stringify(scenario));
+      // An edited link or preset becomes the user's work.
+      if (before.origin !== "own") savePrevious(JSON.stringify(scenario));
       saveScenario(JSON.stringify(scenario));
     }
   }
   if (before?.validation !== validation || before?.approved !== approved || before?.drafts !== drafts) runner.plan();
   if (result && before?.result !== result) {
     document.documentElement.dataset.state = "busy";
-    if (result.revision === state.revision && state.origin === "own") saveGood(JSON.stringify(scenario));
-    // Before the requests of the views.
+    if (result.revision === state.revision && state.origin === "own") saveLastValid(JSON.stringify(scenario));
+    // Before the views send their requests.
     engine.request("select", result.controller).catch(unlessDropped);
   }
-  if (state.run.progress) unveil();
+  if (state.run.progress) revealPage();
   const drawn = views.map((view) => view.render(state, before));
   byId("views").classList.toggle("blank", result === null);
   byId("views").classList.toggle(
     "dim",
     result !== null && isStale(state) && blockedBy(state) !== "unvalidated" && state.run.phase !== "running",
   );
-  if (result && before?.result !== result) settle(Promise.allSettled(drawn));
-  else if (state.run.phase === "failed") settle(Promise.resolve());
+  if (result && before?.result !== result) markReady(Promise.allSettled(drawn));
+  else if (state.run.phase === "failed") markReady(Promise.resolve());
 }
 
 /** Shows the form and the views. */
-function unveil() {
+function revealPage() {
   delete document.documentElement.dataset.boot;
 }
 
 /** Marks the page as ready after drawing. @param {Promise<unknown>} drawn */
-async function settle(drawn) {
+async function markReady(drawn) {
   const { revision, result } = state;
   await drawn;
   await new Promise((resolve) => requestAnimationFrame(resolve));
-  unveil();
+  revealPage();
   if (state.revision === revision && state.result === result) document.documentElement.dataset.state = "ready";
   cacheOffline();
 }
@@ -127,7 +137,7 @@ const runner = createRunner({
   engine,
   dispatch,
   now: () => state,
-  blocked: () => settle(Promise.resolve()),
+  blocked: () => markReady(Promise.resolve()),
   started: () => {
     document.documentElement.dataset.state = "busy";
   },
@@ -149,9 +159,9 @@ async function start() {
     engine.request("schema"),
     loadCharts(),
   ]);
-  takeSchema(schema);
-  const made = samples();
-  // The history of another version is not used.
+  setSchema(schema);
+  const defaults = samples();
+  // The history of another version of the page is not used.
   const version = byId("version").textContent ?? "";
   const { left, good } = await savedWork(engine, fallback, version);
   state = left;
@@ -161,12 +171,12 @@ async function start() {
   // Enter in a field must not submit the form.
   byId("form").addEventListener("submit", (event) => event.preventDefault());
   const link = createLink(page);
-  createImports({ openLink: link.openLink, ...page });
+  createImports({ openLink: link.openLink, problemText, ...page });
   const remedies = createRemedyRequests(engine);
-  const { all, loadKeys } = createViews(page, drivers, made);
+  const { all, loadKeys } = createViews(page, drivers, defaults);
   views = [
-    createHeader({ presets, cancel: runner.cancel, retry: runner.retry, ...page }),
-    createForm({ root: byId("fields"), samples: made, drivers, dispatch, remedies }),
+    createHeader({ presets, problemText, cancel: runner.cancel, retry: runner.retry, ...page }),
+    createForm({ root: byId("fields"), samples: defaults, drivers, dispatch, remedies }),
     createTabs(page),
     createPanes(page),
     ...all,
@@ -178,7 +188,7 @@ async function start() {
       "link-about",
     ),
     createLazyPopover("export", "export-panel", (popover) => exportsOf(page, popover), "export-status"),
-    createSavedExperiments({ fresh: fallback, ...page }),
+    createSavedExperiments({ newExperiment: fallback, problemText, ...page }),
     link,
   ];
   createKeys(loadKeys);
@@ -200,5 +210,5 @@ start().catch((error) => {
   byId("status").textContent = "The engine could not be started";
   byId("engine-message").hidden = false;
   /** @type {Element} */ (byId("engine-message").firstElementChild).textContent =
-    `The engine could not be started: ${error instanceof Error ? error.message : error}`;
+    `The engine could not be started: ${errorMessage(error)}`;
 });

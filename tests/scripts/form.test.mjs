@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { derivedRows, moveNote } from "../../web/form/derived_rows.js";
-import { placed, problemsOf } from "../../web/form/problem_places.js";
+import { assignProblems, problemsOf } from "../../web/form/problem_places.js";
 import { lengthText, withoutGroup, withRaisedGroup } from "../../web/form/program_groups.js";
 import { isUsed, needsRemedies, shapeOf } from "../../web/form/shape.js";
 import { hasNoLine, samplePackets, sampleSends } from "../../web/form/source_kinds.js";
@@ -60,7 +60,7 @@ test("cycles are shown as a time, too", () => {
   assert.equal(meaning(9600, { kind: "whole", key: "baud", unit: "baud" }, state), "");
 });
 
-test("a problem is placed at its field, else at its part, else in the list", () => {
+test("a problem is assigned to its field, else to its part, else to the list", () => {
   const fields = new Map([
     ["bus.channels", 1],
     ["source.packets.packets", 1],
@@ -73,7 +73,7 @@ test("a problem is placed at its field, else at its part, else in the list", () 
     { path: "source.motion.axes[0].moves[1].ramps", message: "d" },
     { path: "analysis", message: "e" },
   ];
-  const places = placed(problems, fields, parts);
+  const places = assignProblems(problems, fields, parts);
   assert.deepEqual(
     [...places.fields],
     [

@@ -124,7 +124,7 @@ test("a role that is impossible is not selected first, and only then", () => {
 test("a failed worker leaves a streaming device unsettled", () => {
   const stream = session();
   stream.begin("stream", false, "");
-  assert.match(stream.failed("out of memory"), /^This failed: out of memory\. The device executes its queue/);
+  assert.match(stream.failed("out of memory"), /^The transfer failed: out of memory\. The device executes its queue/);
   assert.equal(stream.device.unsettled, stream.sent);
   assert.equal(stream.closed(), true);
   const idle = session();

@@ -54,17 +54,17 @@ test("a field of cycles takes a time", () => {
 
 test("errors state the text and what is allowed", () => {
   const rows = [
-    ["", "s", /^A number is missing; give one, such as 0\.4 or 400 ms\.$/],
-    ["x", "Hz", /^“x” is not a number; give one/],
+    ["", "s", /^A number is missing; use one, such as 0\.4 or 400 ms\.$/],
+    ["x", "Hz", /^“x” is not a number; use one/],
     ["3 Mm", "mm", /^“Mm” is not a unit of this field; use mm\.$/],
     ["3 kg", "", /^“kg” is not a unit of this field; use a number without a unit\.$/],
     ["3 V", "cycles", /^“V” is not a unit of this field; use cycles or a time, such as 2\.5 us\.$/],
-    ["1,200", "Hz", /^“1,200” can mean 1200 or 1\.200; write it without a comma\.$/],
+    ["1,200", "Hz", /^“1,200” can mean 1200 or 1\.200; use a number without a comma\.$/],
     ["1e999", "", /too large/],
   ];
   for (const [text, unit, expected] of rows) assert.match(parseNumber(text, unit).message, expected, text);
   const whole = parseNumber("0.4", "", { integer: true, least: 1, most: 9 });
-  assert.match(whole.message, /^0\.4 is not a whole number; give 1\.$/);
+  assert.match(whole.message, /^0\.4 is not a whole number; use 0 or 1\.$/);
 });
 
 test("a typed unit is selected", () => {

@@ -5,7 +5,7 @@ import { COLUMNS, columnWidths, isHighlighted, meaningOf } from "../../web/views
 const widest = { index: 30, time: 80, gap: 60, outcome: 90, bytes: 400, meaning: 300 };
 
 test("a wide table shows all bytes and the gap", () => {
-  assert.deepEqual(columnWidths(widest, 1200, false), { tight: false, bytes: 400, outcome: 90 });
+  assert.deepEqual(columnWidths(widest, 1200, false), { isTight: false, bytes: 400, outcome: 90 });
 });
 
 test("the bytes of a frame get what its meaning leaves", () => {
@@ -15,7 +15,7 @@ test("the bytes of a frame get what its meaning leaves", () => {
 
 test("in a narrow table the gap goes first, and the outcome narrows last", () => {
   const narrow = columnWidths(widest, 360, false);
-  assert.ok(narrow.tight);
+  assert.ok(narrow.isTight);
   assert.deepEqual([narrow.bytes, narrow.outcome], [96, 90]);
   const least = columnWidths(widest, 260, false);
   assert.deepEqual([least.bytes, least.outcome], [80, 52]);

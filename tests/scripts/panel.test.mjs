@@ -46,7 +46,7 @@ test("a press within another one of the same button is refused", () => {
 test("an input that the axis drives, or that changes in this cycle, is refused", () => {
   assert.match(
     put([], { cycle: 1, input: "limit_min", level: 1 }, { min_switch_at: 5 }, timeOf).refused,
-    /axis\.min_switch_at/,
+    /The left limit switch is driven by the left switch of the virtual axis/,
   );
   assert.match(
     put([entry(7, "ok")], { cycle: 7, input: "ok", level: 0 }, null, timeOf).refused,
@@ -143,7 +143,7 @@ test("a panel's word has state, alarm, trust, outputs, group and loop", () => {
   assert.deepEqual(word, { state: "ALARM", alarm: "ESTOP", trust: "SURE", outputs: 10, group: 3, loop: 5 });
   assert.equal(led(word), "quick");
   assert.match(advice(word, true), /^Release the emergency stop/);
-  assert.match(advice({ state: "READY", alarm: "", trust: "LOST" }, true), /: home, or jog to a known position/);
+  assert.match(advice({ state: "READY", alarm: "", trust: "LOST" }, true), /press home, or jog to a known position/);
   assert.match(sentence(word, { groups: 4, loops: 9 }), /^ALARM ESTOP · position confirmed · group 3\/4, loop 5\/9$/);
   assert.equal(momentFrom([0, 1, 2, 3, 4, 5, 6, 1, 8, 9]).powered, true);
 });
@@ -211,7 +211,7 @@ test("an edit goes into the selected controller's script and is one step of undo
   bench.editor.click("start", 20);
   const of = (controller) => bench.state.scenario.source.standalone[controller].inputs.map(({ cycle }) => cycle);
   assert.deepEqual(of(1), [500, 520]);
-  assert.match(bench.reports[0][0], /^start is pressed at 500 ms, for 20 ms\.$/);
+  assert.match(bench.reports[0][0], /^Start is pressed at 500 ms for 20 ms\.$/);
   assert.equal(bench.state.cursors.a, 540);
   bench.editor.set("power", 0);
   assert.deepEqual(of(0), [540]);

@@ -8,7 +8,7 @@ import { update } from "../../web/state/update.js";
 const start = initial({ source: {} });
 const edge = (pane) => layout.EDGES.find((each) => each.pane === pane);
 const bands = bandsOf(layout.shownViews(start));
-const sizes = { before: 400, after: 600, heights: [400, 250, 200], bands, room: 850 + 16 };
+const sizes = { before: 400, after: 600, heights: [400, 250, 200], bands, total: 850 + 16 };
 
 test("there is a line for every pair of neighbors", () => {
   assert.deepEqual(
@@ -51,7 +51,7 @@ test("a view folds and unfolds", () => {
 });
 
 test("a view with nothing to show is small until it is unfolded", () => {
-  const bare = update(start, { type: "bare", view: "packets", bare: true });
+  const bare = update(start, { type: "empty", view: "packets", isEmpty: true });
   assert.ok(layout.isSmall(bare, "packets"));
   const open = apply(bare, layout.folded(bare, "packets"));
   assert.ok(!layout.isSmall(open, "packets"));
@@ -69,8 +69,8 @@ test("one view fills the screen, and then nothing is small", () => {
 
 test("a maximized view that has nothing to show gives the screen back", () => {
   const most = apply(start, layout.maximized(start, "packets"));
-  assert.equal(layout.largestOf(update(most, { type: "bare", view: "packets", bare: true })), null);
-  const bare = update(start, { type: "bare", view: "packets", bare: true });
+  assert.equal(layout.largestOf(update(most, { type: "empty", view: "packets", isEmpty: true })), null);
+  const bare = update(start, { type: "empty", view: "packets", isEmpty: true });
   assert.equal(layout.largestOf(apply(bare, layout.maximized(bare, "packets"))), "packets");
 });
 

@@ -112,17 +112,17 @@ test("a comparison names the alignment, the worst step and the first differences
     5,
   );
   assert.match(text, /, aligned by byte 5: 100 bytes, the baseline has 100, 2 missing, 1 extra; the others compared/);
-  assert.match(text, /byte 3 \(the first is 0\) has the largest deviation, 1 µs early, 4 with another value/);
+  assert.match(text, /byte 3 \(the first is 0\) has the maximum deviation, 1 µs early, 4 with another value/);
   assert.match(text, / a; b; c; 9 differences in total\./);
 });
 
-test("the place of the worst step has the step in its middle and stays in the run", () => {
+test("the location of the worst step has the step in its middle and stays in the run", () => {
   const run = { summary: { clock_hz: 1000, end_cycle: 100_000 }, controller: 1 };
   const largest = { step: 3, late_s: 1, recorded_s: 50 };
-  const place = texts.worstPlace({ ...COMPARISON, largest }, run);
-  assert.deepEqual([place.cycle, place.controller], [50_000, 1]);
-  assert.equal(place.start + place.end, 100_000);
-  const early = texts.worstPlace({ ...COMPARISON, largest: { ...largest, recorded_s: 0 } }, run);
+  const location = texts.worstLocation({ ...COMPARISON, largest }, run);
+  assert.deepEqual([location.cycle, location.controller], [50_000, 1]);
+  assert.equal(location.start + location.end, 100_000);
+  const early = texts.worstLocation({ ...COMPARISON, largest: { ...largest, recorded_s: 0 } }, run);
   assert.equal(early.start, 0);
 });
 
@@ -153,7 +153,7 @@ test("the message of an import says what the views show", () => {
 
 test("packets are listed up to a maximum", () => {
   assert.match(texts.packetsText({ total: 1, replies: 0, rows: [1] }), /^1 packet, 0 complete frames of the device: $/);
-  assert.match(texts.packetsText({ total: 9, replies: 4, rows: [1, 2] }), /; the first 2 of them: $/);
+  assert.match(texts.packetsText({ total: 9, replies: 4, rows: [1, 2] }), /; the first 2: $/);
   const packet = {
     line: "RX",
     kind: "packet",
@@ -197,7 +197,13 @@ test("a note is cut at its maximum length, by characters", () => {
 test("figures of steps name peaks only where there are some", () => {
   const figures = { steps: 1, right: 1, left: 0, first_s: 0, last_s: 0, shortest_at_s: null };
   const none = { ...figures, greatest_rate_steps_s: null, greatest_acceleration_steps_s2: null };
-  assert.equal(texts.stepsText({ channel: 2, figures: none }), "Channel 2: 1 step, 1 right and 0 left, 0 s to 0 s.");
+  assert.equal(
+    texts.stepsText({ channel: 2, figures: none }),
+    "Channel 2: 1 step, 1 right and 0 left, from 0 s to 0 s.",
+  );
   const some = { ...figures, greatest_rate_steps_s: 500, greatest_acceleration_steps_s2: 9 };
-  assert.match(texts.stepsText({ channel: 2, figures: some }), /; at most 500 steps\/s, at 0 s, and 9 steps\/s²\.$/);
+  assert.match(
+    texts.stepsText({ channel: 2, figures: some }),
+    /; maximum rate 500 steps\/s at 0 s, maximum acceleration 9 steps\/s²\.$/,
+  );
 });

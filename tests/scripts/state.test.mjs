@@ -33,8 +33,8 @@ const done = (revision, end = 1000, { clock = 10, controllers = [controller(4)] 
 const window = (start, end) => ({ type: "window", window: { start, end } });
 const open = (start, end) => ({ type: "open", view: { window: { start, end } } });
 const view = (parts) => ({ type: "open", view: parts });
-const seen = { type: "seen", text: "x" };
-const compared = (text = "x") => ({ type: "compared", text, verdict: { same: true } });
+const sender = { type: "sender", text: "x" };
+const compared = (text = "x") => ({ type: "compared", text, comparison: { same: true } });
 const cursor = (which, cycle) => ({ type: "cursor", which, cycle });
 const marker = (digit, cycle) => ({ type: "marker", digit, cycle });
 const replace = (scenario, origin = "preset:x") => ({ type: "replace", scenario, origin });
@@ -42,7 +42,7 @@ const draft = (path) => ({ type: "draft", path, text: "x", message: "no number" 
 const many = (count) => Array.from({ length: count }, (_, at) => edit("a.b", at + 100));
 const b = (state) => state.scenario.a.b;
 
-const bare = (view, bare) => ({ type: "bare", view, bare });
+const empty = (view, isEmpty) => ({ type: "empty", view, isEmpty });
 const rows = (some) => ({ type: "rows", rows: some });
 
 /** @type {[string, any[], (state: any) => any, any][]} name, messages, what is compared, what it must be */
@@ -314,14 +314,14 @@ const cases = [
   [
     "a link's window waits for the result",
     [open(10, 50), done(0)],
-    (s) => [s.window, s.awaited],
+    (s) => [s.window, s.pendingView],
     [{ start: 10, end: 50 }, null],
   ],
   ["a link's window beyond the run is left", [open(10, 5000), done(0)], (s) => s.window, null],
   [
     "a link's cursors, axis and unit are taken as far as the run has them",
     [view({ a: 5, b: 5000, axis: 9, unit: "mm", sides: { spectrum: "timing" } }), done(0)],
-    (s) => [s.cursors, s.axis, s.unit, s.sides, s.awaited],
+    (s) => [s.cursors, s.axis, s.unit, s.sides, s.pendingView],
     [{ a: 5, b: null }, 3, "mm", { spectrum: "timing" }, null],
   ],
   [
@@ -332,14 +332,14 @@ const cases = [
   ],
   [
     "what a sender saw is kept until the run is compared",
-    [seen, done(0), compared()],
-    (s) => s.seen,
-    { text: "x", verdict: { same: true } },
+    [sender, done(0), compared()],
+    (s) => s.sender,
+    { text: "x", comparison: { same: true } },
   ],
-  ["another comparison is not this link's", [seen, done(0), compared("y")], (s) => s.seen.verdict, null],
-  ["another run is compared anew", [seen, done(0), compared(), done(0)], (s) => s.seen.verdict, null],
-  ["an edit forgets what a sender saw", [seen, done(0), compared(), edit("a.b", 2)], (s) => s.seen, null],
-  ["so does undo", [edit("a.b", 2), seen, undo], (s) => s.seen, null],
+  ["another comparison is not this link's", [sender, done(0), compared("y")], (s) => s.sender.comparison, null],
+  ["another run is compared anew", [sender, done(0), compared(), done(0)], (s) => s.sender.comparison, null],
+  ["an edit forgets what a sender saw", [sender, done(0), compared(), edit("a.b", 2)], (s) => s.sender, null],
+  ["so does undo", [edit("a.b", 2), sender, undo], (s) => s.sender, null],
   ["an edit forgets a link's window", [open(10, 50), edit("a.b", 2), done(1)], (s) => s.window, null],
   // What is pointed at.
   [
@@ -363,14 +363,14 @@ const cases = [
   // How the views and the rows of the pulses stand.
   [
     "a view that has nothing to show is told once",
-    [bare("packets", true), bare("packets", true), bare("spectrum", true)],
-    (s) => s.bare,
+    [empty("packets", true), empty("packets", true), empty("spectrum", true)],
+    (s) => s.emptyViews,
     ["packets", "spectrum"],
   ],
   [
     "until it has",
-    [bare("packets", true), bare("spectrum", true), bare("packets", false)],
-    (s) => s.bare,
+    [empty("packets", true), empty("spectrum", true), empty("packets", false)],
+    (s) => s.emptyViews,
     ["spectrum"],
   ],
   [
@@ -421,8 +421,8 @@ test("an edit shares what it does not touch, so that views can compare by identi
 
 test("a message without effect gives the same state", () => {
   const base = begin();
-  for (const type of ["hover", "committed", "undo", "bare"])
-    assert.equal(update(base, { type, cycle: null, bare: false }), base, type);
+  for (const type of ["hover", "committed", "undo", "empty"])
+    assert.equal(update(base, { type, cycle: null, isEmpty: false }), base, type);
 });
 
 test("an earlier visit's result is shown while there is none", () => {
@@ -449,7 +449,7 @@ test("a window is clamped to the run", () => {
   for (const [given, last, wanted] of rows) assert.deepEqual(clamp(given, last), wanted);
 });
 
-test("a path leads to a value, and set makes no list of an object", () => {
+test("a path isDefault to a value, and set makes no list of an object", () => {
   assert.deepEqual(set({ x: [1, 2] }, "x[0]", 9), { x: [9, 2] });
   assert.equal(get(first, "list[1].c"), 2);
   assert.equal(get(first, "none.deeper"), undefined);

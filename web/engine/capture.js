@@ -1,5 +1,6 @@
-/** Talks to the worker that reads recordings (capture_worker.js), one file at a time. */
+/** The interface to the worker that reads recordings (capture_worker.js), one file at a time. */
 import { byId } from "../dom.js";
+import { PendingRequests } from "./pending_requests.js";
 import { compiled } from "./wasm.js";
 
 /**
@@ -8,7 +9,7 @@ import { compiled } from "./wasm.js";
  * @typedef {{channel: number, figures: {steps: number, right: number, left: number, turns: number, position: number,
  *   first_s: number, last_s: number, shortest_interval_s: number | null, shortest_at_s: number | null, greatest_rate_steps_s: number | null,
  *   mean_rate_steps_s: number | null, greatest_acceleration_steps_s2: number | null}}} ChannelSteps
- * @typedef {{from_s: number, to_s: number, end_s: number, records: number, of: number}} Part  The visible part, unless that is all.
+ * @typedef {{from_s: number, to_s: number, end_s: number, records: number, of: number}} Part  The visible part of a longer recording.
  * @typedef {{map: string, clock_hz: number, rounding: string, end_s: number, records: number, part: Part | null, notes: string[],
  *   steps: ChannelSteps[], lines: string[]}} Preview
  * @typedef {{line: string, kind: string, start_cycle: number, end_cycle: number, bytes: number[], meaning: string, outcome: string}} LinePacket
@@ -17,12 +18,12 @@ import { compiled } from "./wasm.js";
  * @typedef {{bytes: Uint8Array, unknown: number}} Replies  Empty if the device was silent; `unknown` packets have no known controller.
  * @typedef {{map?: string, clock_hz?: number, sample_rate_hz?: bigint, baud?: number, uart?: string, at_s?: number, channel?: number, aligned?: number, from_s?: number, to_s?: number}} OpenRequest
  * @typedef {{map?: string, base?: string}} ReadOptions  Channels that are read first if there are more than 64; base of bytes.
- * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number, aligned: number}} Model  A channel and RX of a run, and the step or byte to align by.
+ * @typedef {{records: Uint8Array, clock_hz: number, channel: number, baud: number, aligned: number}} Model  Records of a channel and RX of a run, and the step or byte to align by.
  */
 
-/** Maximum changes, bytes or positions; a change takes two to four bytes of memory, the others 16. */
-const MAX_READ = 120_000_000;
-/** Maximum changes in the views; each takes 64 bytes in transfer and 16 bytes in four places. */
+/** Maximum changes, bytes or positions that are read. A change takes two to four bytes of memory, a byte or position 16. */
+const MAX_ROWS = 120_000_000;
+/** Maximum changes in the views. Each takes 64 bytes during transfer, and 16 bytes in four copies. */
 const MAX_SHOWN = 20_000_000;
 /** Records per message. */
 const PIECE = 1 << 19;
@@ -33,9 +34,7 @@ const PIECE = 1 << 19;
  */
 export function openCapture(file, onProgress, options = {}) {
   const worker = new Worker(/** @type {string} */ (byId("main").dataset.captureWorker), { type: "module" });
-  /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
-  const requests = new Map();
-  let next = 0;
+  const requests = new PendingRequests();
   /** File name and scenario of a sample. @type {{file: string, scenario: string} | null} */
   let sample = null;
   /** @type {Promise<Facts>} */
@@ -48,41 +47,34 @@ export function openCapture(file, onProgress, options = {}) {
         return resolve(data.facts);
       }
       if (data.id === undefined) return reject(new Error(data.error));
-      const request = requests.get(data.id);
-      requests.delete(data.id);
-      if ("error" in data) request?.reject(Object.assign(new Error(data.error), { field: data.field }));
-      else request?.resolve(data.value);
+      requests.settle(data);
     };
     compiled("tools").then((module) => {
       worker.postMessage({ module });
-      worker.postMessage(typeof file === "string" ? { sample: file } : { file, most: MAX_READ, ...options });
+      worker.postMessage(typeof file === "string" ? { sample: file } : { file, most: MAX_ROWS, ...options });
     }, reject);
   });
 
   /** @param {string} method @param {...any} args @returns {Promise<any>} */
-  const call = (method, ...args) =>
-    new Promise((resolve, reject) => {
-      requests.set(next, { resolve, reject });
-      worker.postMessage({ id: next++, method, args });
-    });
+  const call = (method, ...args) => requests.add((id) => worker.postMessage({ id, method, args }));
 
   return {
     facts,
     sample: () => sample,
-    /** @param {OpenRequest} by @returns {Promise<Preview>} */
-    preview: (by) => call("preview", { most: MAX_SHOWN, ...by }),
+    /** @param {OpenRequest} request @returns {Promise<Preview>} */
+    preview: (request) => call("preview", { most: MAX_SHOWN, ...request }),
     /** Overview of a channel. @param {number} channel @param {number} columns @returns {Promise<Columns | null>} */
     overview: (channel, columns) => call("overview", channel, columns),
     /** The scenario of the recording. @param {boolean} ofSteps @returns {Promise<string>} */
     scenario: (ofSteps) => call("scenario", sample?.file ?? /** @type {File} */ (file).name, ofSteps),
-    /** Packets on its lines: the first `most`, and all as a table. @param {boolean} addressed @param {number} most @returns {Promise<LinePackets | null>} */
-    packets: (addressed, most) => call("packets", addressed, most),
+    /** Packets on its lines: the first `maxRows`, and all as CSV. @param {boolean} addressed @param {number} maxRows @returns {Promise<LinePackets | null>} */
+    packets: (addressed, maxRows) => call("packets", addressed, maxRows),
     /** Replies on TX, by the addresses of controllers. @param {number[]} addresses @returns {Promise<Replies | undefined>} */
     replies: (addresses) => call("replies", addresses),
-    /** Time of a step or byte of a run, in s. @param {Model} of @returns {Promise<number | undefined>} */
+    /** Time of a step or byte of a run, in s. @param {Model} model @returns {Promise<number | undefined>} */
     timeOf: ({ records, clock_hz, channel, baud, aligned }) =>
       call("time_of", records, clock_hz, channel, baud, aligned),
-    /** Comparison with a run. @param {Model} of @returns {Promise<any>} */
+    /** Comparison with a run. @param {Model} model @returns {Promise<any>} */
     comparison: ({ records, clock_hz, channel, baud, aligned }) =>
       call("comparison", records, clock_hz, channel, baud, aligned),
     /** All records, in pieces. @param {number} count @returns {Promise<Uint8Array[]>} */

@@ -1,11 +1,12 @@
 /**
  * The worker that reads recordings in pieces.
  *
- * In: {module}, the compiled code, first; {file, most, map, base} or {sample}, replied with {progress}, then {facts} or {error};
+ * In: first {module}, the compiled code; {file, most, map, base} or {sample}, replied with {progress}, then {facts} or {error};
  * {id, method, args}, replied with {id, value} or {id, error}.
  */
 import init, * as core from "../pkg-tools/stepscope_wasm.js";
-import { awaitModule, fatal, text } from "./worker_common.js";
+import { errorMessage } from "../state/error_message.js";
+import { awaitModule, isFatal } from "./worker_common.js";
 
 /** Minimum time between two reports of progress, in ms. */
 const REPORT_MS = 60;
@@ -44,7 +45,7 @@ self.onmessage = async ({ data }) => {
       postMessage({ id: data.id, value }, value instanceof Uint8Array ? [value.buffer] : []);
     }
   } catch (error) {
-    const message = fatal(error) ? "the file needs more memory than the browser provides" : text(error);
+    const message = isFatal(error) ? "the file needs more memory than the browser provides" : errorMessage(error);
     // The field of the dialog that has to change, if known.
     const field = /** @type {{field?: string} | null} */ (error)?.field;
     postMessage(data.id === undefined ? { error: message } : { id: data.id, error: message, field });

@@ -1,13 +1,16 @@
 /**
- * Talks to the worker: requests, one run at a time, and a new worker after a crash or a cancel without a reply. A new worker
+ * The interface to the worker: requests, and one run at a time. A crash, or a cancel without a reply, starts a new worker, which
  * repeats the last valid run for the views. Long requests go to additional workers (worker_pool.js).
  */
 import { byId } from "../dom.js";
+import { PendingRequests } from "./pending_requests.js";
+import { MAX_RECORDINGS, sendRecordings } from "./recordings.js";
 import { Dropped, RequestSlots } from "./request_slots.js";
 import { compiled } from "./wasm.js";
 
 /** @typedef {import("../state/types.js").Progress} Progress */
 /** @typedef {import("../state/types.js").Summary} Summary */
+/** @typedef {{run: number, json: string}} Run  A revision and its scenario. */
 
 /**
  * @typedef {object} Listener
@@ -19,37 +22,34 @@ import { compiled } from "./wasm.js";
  * @property {() => void} stopped  A cancel got no reply; a new worker has started, and open requests are dropped.
  */
 
-/** @typedef {{id: number, scenario: string, pieces: Uint8Array[], replies?: Uint8Array}} Recording */
-
 /** Maximum time without a reply to a cancel, in ms. */
-const PATIENCE_MS = 1000;
-
-/** Recordings that undo can restore. */
-const MAX_RECORDINGS = 3;
+const CANCEL_TIMEOUT_MS = 1000;
+/** Crashes without a reply between them after which no new worker starts by itself. */
+const MAX_CRASHES = 2;
 /** Error if the code of additional workers cannot be fetched. */
 const MISSING = "this part of the page could not be loaded; check the network and try again";
 
 export class Engine {
   #worker = this.#start();
   #listener;
-  #next = 0;
-  /** The current run; the last valid run; the run that a new worker repeats. @type {{run: number, json: string} | null} */
+  /** Number of the next recording. */
+  #nextRecording = 0;
+  /** The current run. @type {Run | null} */
   #running = null;
-  /** @type {{run: number, json: string} | null} */
-  #good = null;
-  /** @type {{run: number, json: string} | null} */
+  /** The last valid run. @type {Run | null} */
+  #lastValid = null;
+  /** The run that a new worker repeats. @type {Run | null} */
   #restoring = null;
-  /** Recordings shown instead of the runs of these scenarios, newest last. @type {Recording[]} */
+  /** Recordings shown instead of the runs of these scenarios, newest last. @type {import("./recordings.js").Recording[]} */
   #recordings = [];
   /** The controller that the worker has selected. */
   #selected = 0;
-  #cancelling = 0;
+  #cancelTimer = 0;
   /** Additional workers, loaded on demand. @type {Promise<import("./worker_pool.js").WorkerPool> | null} */
-  #loading = null;
+  #loadingPool = null;
   /** Crashes since the last reply; limits restarts. */
   #crashes = 0;
-  /** @type {Map<number, {resolve: (value: any) => void, reject: (error: Error) => void}>} */
-  #requests = new Map();
+  #requests = new PendingRequests();
   #slots = new RequestSlots((method, args) => this.request(method, ...args));
 
   /** @param {Listener} listener */
@@ -64,12 +64,8 @@ export class Engine {
    * @returns {Promise<any>}  null if there is no run.
    */
   request(method, ...args) {
-    const id = this.#next++;
     if (method === "select") this.#selected = args[0];
-    return new Promise((resolve, reject) => {
-      this.#requests.set(id, { resolve, reject });
-      this.#worker.postMessage({ id, method, args });
-    });
+    return this.#requests.add((id) => this.#worker.postMessage({ id, method, args }));
   }
 
   /**
@@ -92,49 +88,42 @@ export class Engine {
    * @param {string} scenario @param {Uint8Array[]} pieces  Its records, if any.
    * @param {Uint8Array} [replies]  Recorded replies.
    */
-  record(scenario, pieces, replies) {
-    this.#recordings = [...this.#recordings, { id: this.#next++, scenario, pieces, replies }].slice(-MAX_RECORDINGS);
-    void this.#give(this.#recordings.slice(-1));
+  showRecording(scenario, pieces, replies) {
+    const recording = { id: this.#nextRecording++, scenario, pieces, replies };
+    this.#recordings = [...this.#recordings, recording].slice(-MAX_RECORDINGS);
+    void this.#send([recording]);
   }
 
-  /** Sends recordings to the worker in pieces, so that the page stays responsive. @param {Recording[]} recordings */
-  async #give(recordings) {
+  /** @param {import("./recordings.js").Recording[]} recordings */
+  #send(recordings) {
     const worker = this.#worker;
-    for (const { id, scenario, pieces, replies } of recordings)
-      worker.postMessage({ recording: id, scenario, count: pieces.length, replies });
-    for (const { id, pieces } of recordings) {
-      for (const piece of pieces) {
-        await new Promise((rested) => setTimeout(rested));
-        if (worker !== this.#worker) return;
-        worker.postMessage({ piece, of: id });
-      }
-    }
+    return sendRecordings(worker, recordings, () => worker === this.#worker);
   }
 
   /** Cancels an unfinished run. @param {number} revision */
   cancel(revision) {
     this.#running = null;
     this.#worker.postMessage({ cancel: revision });
-    clearTimeout(this.#cancelling);
-    this.#cancelling = window.setTimeout(() => {
+    clearTimeout(this.#cancelTimer);
+    this.#cancelTimer = window.setTimeout(() => {
       this.#renew("canceled");
       this.#listener.stopped();
-    }, PATIENCE_MS);
+    }, CANCEL_TIMEOUT_MS);
   }
 
   #start() {
     const worker = startWorker();
     worker.onmessage = ({ data }) => this.#receive(data);
-    worker.onerror = (event) => this.#restart(event.message || "the engine could not be loaded");
+    worker.onerror = (event) => this.#handleCrash(event.message || "the engine could not be loaded");
     return worker;
   }
 
   async #pool() {
     try {
-      this.#loading ??= import("./worker_pool.js").then(({ WorkerPool }) => new WorkerPool(Dropped, MISSING));
-      return await this.#loading;
+      this.#loadingPool ??= import("./worker_pool.js").then(({ WorkerPool }) => new WorkerPool(Dropped, MISSING));
+      return await this.#loadingPool;
     } catch {
-      this.#loading = null;
+      this.#loadingPool = null;
       throw new Error(MISSING);
     }
   }
@@ -155,8 +144,8 @@ export class Engine {
    * @param {string} slot @param {string} method @param {...any} args
    * @returns {Promise<any>}
    */
-  async consider(slot, method, ...args) {
-    return (await this.#pool()).consider(slot, method, args);
+  async compute(slot, method, ...args) {
+    return (await this.#pool()).compute(slot, method, args);
   }
 
   /**
@@ -164,9 +153,9 @@ export class Engine {
    * @param {string} slot @param {string} method @param {...any} args
    * @returns {Promise<any>}  undefined if there is no run.
    */
-  async considerRun(slot, method, ...args) {
-    const good = this.#good ?? this.#restoring;
-    return good === null ? undefined : this.consider(slot, method, good.json, ...args);
+  async computeForRun(slot, method, ...args) {
+    const run = this.#validRun();
+    return run === null ? undefined : this.compute(slot, method, run.json, ...args);
   }
 
   /**
@@ -177,9 +166,14 @@ export class Engine {
    * @returns {Promise<T | null>}  null if there is no run.
    */
   async session(work) {
-    const good = this.#good ?? this.#restoring;
-    if (good === null) return null;
-    return (await this.#pool()).session((request) => work(request, good.json));
+    const run = this.#validRun();
+    if (run === null) return null;
+    return (await this.#pool()).session((request) => work(request, run.json));
+  }
+
+  /** The last valid run, also while a new worker repeats it. */
+  #validRun() {
+    return this.#lastValid ?? this.#restoring;
   }
 
   /** @param {any} data */
@@ -189,59 +183,54 @@ export class Engine {
       case "progress":
         return this.#listener.progress(data.run, data.progress);
       case "restored":
-        this.#good ??= this.#restoring;
+        this.#lastValid ??= this.#restoring;
         return this.#listener.restored();
       case "canceled":
-        return clearTimeout(this.#cancelling);
+        return clearTimeout(this.#cancelTimer);
       case "done":
-        if (this.#running?.run === data.run) [this.#good, this.#running] = [this.#running, null];
+        if (this.#running?.run === data.run) [this.#lastValid, this.#running] = [this.#running, null];
         return this.#listener.done(data.run, data.summary, data.ms);
       case "failed":
         return this.#listener.failed(data.run, data.message);
       case "crashed":
-        return this.#restart(data.message);
+        return this.#handleCrash(data.message);
     }
-    const request = this.#requests.get(data.id);
-    this.#requests.delete(data.id);
-    if ("error" in data) request?.reject(new Error(data.error));
-    else request?.resolve(data.value);
+    this.#requests.settle(data);
   }
 
   /** @param {string} message */
-  #restart(message) {
-    // The run that ended the worker is not repeated.
+  #handleCrash(message) {
+    // The run that crashed the worker is not repeated.
     this.#running = null;
-    if (++this.#crashes <= 2) this.#renew(message);
+    if (++this.#crashes <= MAX_CRASHES) this.#renew(message);
     else this.#drop(message);
     this.#listener.crashed(message);
   }
 
   /** Starts a new worker after too many crashes. */
   revive() {
-    if (this.#crashes <= 2) return;
+    if (this.#crashes <= MAX_CRASHES) return;
     this.#crashes = 0;
     this.#renew("restarted");
   }
 
-  /** Replaces the worker. @param {string} why */
-  #renew(why) {
-    this.#drop(why);
+  /** Replaces the worker. @param {string} reason */
+  #renew(reason) {
+    this.#drop(reason);
     this.#worker = this.#start();
-    void this.#give(this.#recordings);
-    // If it also ends this worker, it is not repeated.
-    [this.#restoring, this.#good] = [this.#good, null];
+    void this.#send(this.#recordings);
+    // If it crashes this worker too, it is not repeated again.
+    [this.#restoring, this.#lastValid] = [this.#lastValid, null];
     if (this.#restoring) this.#worker.postMessage({ ...this.#restoring, quiet: true, select: this.#selected });
-    // Requested after the cancel.
+    // A run that was requested after the cancel.
     if (this.#running) this.#worker.postMessage(this.#running);
   }
 
-  /** @param {string} why */
-  #drop(why) {
-    clearTimeout(this.#cancelling);
+  /** @param {string} reason */
+  #drop(reason) {
+    clearTimeout(this.#cancelTimer);
     this.#worker.terminate();
-    const open = [...this.#requests.values()];
-    this.#requests.clear();
-    for (const { reject } of open) reject(new Dropped(why));
+    this.#requests.rejectAll(new Dropped(reason));
   }
 }
 

@@ -1,5 +1,5 @@
 /** A serial port in the worker: reads, writes and closes its streams. */
-import { text } from "./worker_common.js";
+import { errorMessage } from "../state/error_message.js";
 
 /** Maximum time of a write beyond the line time, in ms. */
 const WRITE_MS = 2000;
@@ -9,19 +9,19 @@ const BYTE_BITS = 10;
 /**
  * The streams of a port.
  * @param {{readable: ReadableStream<Uint8Array>, writable: WritableStream<Uint8Array>}} streams
- * @param {(bytes: Uint8Array) => void | Promise<void>} receive  Reading continues when it is done.
- * @param {() => void} changed  Called after received bytes and after the loss of the port.
+ * @param {(bytes: Uint8Array) => void | Promise<void>} receive  Called with received bytes; reading continues when its promise resolves.
+ * @param {() => void} onChange  Called after received bytes and after the loss of the port.
  */
-export function openPort({ readable, writable }, receive, changed) {
+export function openPort({ readable, writable }, receive, onChange) {
   const reader = readable.getReader();
   const writer = writable.getWriter();
   const port = {
-    /** Why it is lost; empty if it is not. */
+    /** Why the port is lost; empty if it is not. */
     lost: "",
     /** @param {unknown} error */
     lose(error) {
-      port.lost ||= text(error) || "the port is lost";
-      changed();
+      port.lost ||= errorMessage(error) || "the port is lost";
+      onChange();
     },
     /** Bytes to be written. */
     waiting: 0,
@@ -36,10 +36,10 @@ export function openPort({ readable, writable }, receive, changed) {
     },
     /** Writes, and resolves when the system has accepted it. @param {Uint8Array} bytes @param {number} baud */
     async send(bytes, baud) {
-      const within = WRITE_MS + (1000 * BYTE_BITS * bytes.length) / baud;
+      const timeout = WRITE_MS + (1000 * BYTE_BITS * bytes.length) / baud;
       let timer = 0;
       const late = new Promise((_, reject) => {
-        timer = setTimeout(() => reject(new Error("the port accepts no bytes")), within);
+        timer = setTimeout(() => reject(new Error("the port accepts no bytes")), timeout);
       });
       await Promise.race([port.write(bytes), late]).catch(port.lose);
       clearTimeout(timer);
@@ -62,9 +62,9 @@ export function openPort({ readable, writable }, receive, changed) {
     for (;;) {
       const { value, done } = await reader.read();
       if (done) throw new Error("the other end closed the port");
-      const taken = receive(value);
-      changed();
-      await taken;
+      const accepted = receive(value);
+      onChange();
+      await accepted;
     }
   };
   read().catch(port.lose);

@@ -1,7 +1,7 @@
 /**
  * An additional worker for long requests of the study and the form.
  *
- * In: {module}, the compiled code, first; {id, method, args}, replied with {id, value} or {id, error}. The methods `open` and
+ * In: first {module}, the compiled code; {id, method, args}, replied with {id, value} or {id, error}. The methods `open` and
  * `of` create an object of a scenario and call it.
  */
 import init, {
@@ -14,7 +14,8 @@ import init, {
   ValidatedScenario,
   with_motor,
 } from "../pkg-tools/stepscope_wasm.js";
-import { awaitModule, createScenarioCache, fatal, text } from "./worker_common.js";
+import { errorMessage } from "../state/error_message.js";
+import { awaitModule, createScenarioCache, isFatal } from "./worker_common.js";
 
 /** Requests without a scenario. @type {{[method: string]: (...args: any[]) => any}} */
 const CALLS = { replay, sheets, sine_best, sine_rows, sine_vertices, step_figures, with_motor };
@@ -54,6 +55,8 @@ self.onmessage = async ({ data }) => {
     await ready;
     postMessage({ id: data.id, value: reply(data.method, data.args) });
   } catch (error) {
-    postMessage(fatal(error) ? { event: "crashed", message: text(error) } : { id: data.id, error: text(error) });
+    postMessage(
+      isFatal(error) ? { event: "crashed", message: errorMessage(error) } : { id: data.id, error: errorMessage(error) },
+    );
   }
 };

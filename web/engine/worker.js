@@ -2,7 +2,7 @@
  * The worker: validates scenarios, runs them in slices, and serves requests about the last finished run. It reads messages
  * between slices, so a newer scenario ends an older run.
  *
- * In: {module}, the compiled core, first; {id, method, args}, replied with {id, value} or {id, error}; {recording} and its
+ * In: first {module}, the compiled core; {id, method, args}, replied with {id, value} or {id, error}; {recording} and its
  * {piece}s, shown instead of a run; {run, json}, replied with events {event, run, …}, or only {event: "restored"} if `quiet`;
  * {cancel}, replied with {event: "canceled"}.
  */
@@ -16,10 +16,11 @@ import init, {
   schema,
   ValidatedScenario,
 } from "../pkg/stepscope_wasm.js";
-import { awaitModule, createScenarioCache, fatal, text } from "./worker_common.js";
+import { errorMessage } from "../state/error_message.js";
+import { MAX_RECORDINGS } from "./recordings.js";
+import { FIRST_SLICE, nextSliceSize, yieldToMessages } from "./slices.js";
+import { awaitModule, createScenarioCache, isFatal } from "./worker_common.js";
 
-/** Duration of a slice, in ms; short enough to cancel within 100 ms. */
-const SLICE_MS = 15;
 /** Minimum time between two reports of progress, in ms. */
 const REPORT_MS = 60;
 /** Records per message. */
@@ -34,46 +35,32 @@ let selected = 0;
 const scenarios = createScenarioCache((json) => new ValidatedScenario(json));
 /** Requests without a run. @type {{[method: string]: (...args: any[]) => any}} */
 const CALLS = { decode_link: open_link, default_scenario, drivers, link_part, link_with, presets, schema };
-/** Number of runs, for a test. */
+/** Number of runs since the start, for a test. */
 let runs = 0;
-/** No run has this number. */
+/** The number of no run. */
 const NONE = -2;
 /** Number of the newest requested run. */
 let newest = NONE;
 
 const { provide, ready } = awaitModule(init);
-/** Newest last; pieces may still arrive. @type {{recording: number, scenario: string, count: number, replies?: Uint8Array, pieces: Uint8Array[]}[]} */
+/** @typedef {{recording: number, scenario: string, count: number, replies?: Uint8Array, pieces: Uint8Array[]}} Recording  `count`: number of pieces; some may still arrive. */
+/** Newest last. @type {Recording[]} */
 let recordings = [];
-/** As in the page. */
-const MAX_RECORDINGS = 3;
 /** Resumes a run that waits for a piece of its recording. @type {(message?: unknown) => void} */
-let goOn = () => {};
-const between = new MessageChannel();
+let resume = () => {};
 
-/** Tasks that let messages in. @type {((event: MessageEvent) => void)[]} */
-const yielding = [];
-between.port1.onmessage = (event) => yielding.shift()?.(event);
-
-/** Lets messages in. */
-function yieldToMessages() {
-  return new Promise((resolve) => {
-    yielding.push(resolve);
-    between.port2.postMessage(0);
-  });
-}
-
-/** Calls a method of a scenario. @param {string} method @param {any[]} args  Its JSON first. */
-function ofScenario(method, [text, ...args]) {
-  const json = String(text);
-  // The next scenario frees it, so it is used at once.
+/** Calls a method of a scenario. @param {string} method @param {any[]} args  The JSON of the scenario first. */
+function callScenario(method, [first, ...args]) {
+  const json = String(first);
+  // Used at once, because the next scenario frees it.
   const value = /** @type {any} */ (scenarios.get(json))[method](...args);
   // With problems, the returned JSON is another scenario.
   if (method === "check" && value.problems.length === 0) scenarios.alias(value.scenario);
   return value;
 }
 
-/** A recording is shown while this is the same. @param {string} json */
-function recordable(json) {
+/** The part of a scenario that identifies its recording. @param {string} json */
+function recordingKey(json) {
   const { source, clock_hz, bus, run_cycles, plant } = JSON.parse(json);
   return JSON.stringify([source, clock_hz, bus.channels, run_cycles, plant]);
 }
@@ -84,14 +71,14 @@ function recordable(json) {
  * @returns {Promise<boolean>}  Whether it ended; if a newer run replaced it, it is freed.
  */
 async function runInSlices(simulation, { run, quiet = false }) {
-  let records = 4096;
+  let records = FIRST_SLICE;
   let reported = performance.now();
   for (;;) {
     const before = performance.now();
     const progress = simulation.advance(records);
     const now = performance.now();
     if (progress.done) return true;
-    records = Math.min(4_000_000, Math.max(256, Math.round((records * SLICE_MS) / Math.max(0.5, now - before))));
+    records = nextSliceSize(records, now - before);
     if (now - reported > REPORT_MS && !quiet) {
       reported = now;
       postMessage({ event: "progress", run, progress: { ...progress } });
@@ -104,6 +91,32 @@ async function runInSlices(simulation, { run, quiet = false }) {
   }
 }
 
+/**
+ * Adds a recording to a run, as its pieces arrive.
+ * @param {any} simulation @param {Recording} recording @param {number} run
+ * @returns {Promise<boolean>}  Whether it is complete; if a newer run replaced it, the simulation is freed.
+ */
+async function addRecording(simulation, { replies, count, pieces }, run) {
+  if (replies) simulation.set_replies(replies);
+  for (let added = 0; added < count; ) {
+    const piece = pieces[added];
+    if (piece) {
+      simulation.record(piece, (count - added) * PIECE);
+      added += 1;
+      await yieldToMessages();
+    } else {
+      await new Promise((resolve) => {
+        resume = resolve;
+      });
+    }
+    if (run !== newest) {
+      release(simulation);
+      return false;
+    }
+  }
+  return true;
+}
+
 /** @param {{run: number, json: string, quiet?: boolean, select?: number}} request */
 async function simulate(request) {
   const { run, json, quiet = false, select = 0 } = request;
@@ -111,21 +124,8 @@ async function simulate(request) {
   const scenario = /** @type {any} */ (scenarios.get(json));
   runs += 1;
   const simulation = scenario.run();
-  const recording = recordings.findLast(({ scenario }) => recordable(scenario) === recordable(json));
-  if (recording?.replies) simulation.set_replies(recording.replies);
-  for (let at = 0; recording && at < recording.count; ) {
-    const piece = recording.pieces[at];
-    if (piece) {
-      simulation.record(piece, (recording.count - at) * PIECE);
-      at += 1;
-    }
-    await (piece
-      ? yieldToMessages()
-      : new Promise((resolve) => {
-          goOn = resolve;
-        }));
-    if (run !== newest) return release(simulation);
-  }
+  const recording = recordings.findLast(({ scenario }) => recordingKey(scenario) === recordingKey(json));
+  if (recording && !(await addRecording(simulation, recording, run))) return;
   if (!(await runInSlices(simulation, request))) return;
   if (finished !== baseline) release(finished);
   finished = simulation;
@@ -151,13 +151,13 @@ function setBaseline(on) {
 }
 
 /** Calls a method of the baseline. @param {string} method @param {any[]} args  The controller first. */
-function ofBaseline(method, [controller, ...args]) {
+function callBaseline(method, [controller, ...args]) {
   if (!baseline) return null;
-  // A run is not compared with itself.
-  const isOwn = method === "motion" || method === "between";
-  if (baseline === finished && !isOwn) return null;
+  // The other methods compare the run with the baseline.
+  const isAboutBaseline = method === "motion" || method === "between";
+  if (baseline === finished && !isAboutBaseline) return null;
   baseline.select(controller);
-  const value = isOwn ? baseline[method](...args) : finished[method](baseline, ...args);
+  const value = isAboutBaseline ? baseline[method](...args) : finished[method](baseline, ...args);
   if (baseline === finished) baseline.select(selected);
   return value;
 }
@@ -171,15 +171,12 @@ async function search(args) {
   const simulation = finished;
   if (!simulation) return null;
   const note = simulation.filter(...args);
-  let rows = 4096;
+  let rows = FIRST_SLICE;
   for (;;) {
     const before = performance.now();
     const found = simulation.filter_on(rows);
     if (found.done) return { note, ...found };
-    rows = Math.min(
-      4_000_000,
-      Math.max(256, Math.round((rows * SLICE_MS) / Math.max(0.5, performance.now() - before))),
-    );
+    rows = nextSliceSize(rows, performance.now() - before);
     await yieldToMessages();
     if (own !== searches || simulation !== finished) return null;
   }
@@ -188,10 +185,10 @@ async function search(args) {
 /** @param {string} method @param {any[]} args */
 async function reply(method, args) {
   if (method === "baseline") return setBaseline(args[0]);
-  if (method.startsWith("baseline_")) return ofBaseline(method.slice(9), args);
+  if (method.startsWith("baseline_")) return callBaseline(method.slice("baseline_".length), args);
   if (method === "counts") return { validated: scenarios.count(), runs };
-  if (method === "encode_link") return ofScenario("link", args);
-  if (method in ValidatedScenario.prototype) return ofScenario(method, args);
+  if (method === "encode_link") return callScenario("link", args);
+  if (method in ValidatedScenario.prototype) return callScenario(method, args);
   if (method === "select") selected = args[0];
   if (method === "filter") return search(args);
   const call = CALLS[method];
@@ -201,7 +198,7 @@ async function reply(method, args) {
 }
 
 self.onmessage = async ({ data }) => {
-  goOn();
+  resume();
   if ("module" in data) return provide(data.module);
   if ("recording" in data) {
     recordings = [...recordings, { ...data, pieces: [] }].slice(-MAX_RECORDINGS);
@@ -224,8 +221,8 @@ self.onmessage = async ({ data }) => {
       postMessage({ id: data.id, value: await reply(data.method, data.args) });
     }
   } catch (error) {
-    if (fatal(error)) postMessage({ event: "crashed", message: text(error) });
-    else if ("run" in data) postMessage({ event: "failed", run: data.run, message: text(error) });
-    else postMessage({ id: data.id, error: text(error) });
+    if (isFatal(error)) postMessage({ event: "crashed", message: errorMessage(error) });
+    else if ("run" in data) postMessage({ event: "failed", run: data.run, message: errorMessage(error) });
+    else postMessage({ id: data.id, error: errorMessage(error) });
   }
 };

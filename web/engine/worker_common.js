@@ -14,12 +14,12 @@ export function awaitModule(init) {
 }
 
 /**
- * Caches the last validated scenario.
+ * A cache of the last validated scenario.
  * @template {{free: () => void}} J
  * @param {(json: string) => J} make
  */
 export function createScenarioCache(make) {
-  /** With its JSON as received, and as written by the core. @type {{texts: string[], scenario: J} | null} */
+  /** The scenario with its equivalent JSON texts: as received, and as written by the core. @type {{texts: string[], scenario: J} | null} */
   let cached = null;
   let count = 0;
   /** @param {string} json @returns {J} */
@@ -31,17 +31,12 @@ export function createScenarioCache(make) {
     cached = { texts: [json], scenario };
     return scenario;
   }
-  /** Adds another JSON of the last scenario. @param {string} json */
+  /** Adds an equivalent JSON text of the last scenario. @param {string} json */
   const alias = (json) => cached?.texts.length === 1 && cached.texts.push(json);
   return { get, alias, count: () => count };
 }
 
-/** After a panic the wasm memory is undefined: the page has to start another worker. @param {unknown} error */
-export function fatal(error) {
+/** Whether the module must not be used any more: after a panic its memory is undefined. @param {unknown} error */
+export function isFatal(error) {
   return error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
-}
-
-/** @param {unknown} error */
-export function text(error) {
-  return error instanceof Error ? error.message : String(error);
 }

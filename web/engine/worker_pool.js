@@ -4,16 +4,16 @@ import { compiled } from "./wasm.js";
 
 /** Maximum workers per request. */
 const MAX_WORKERS = 4;
-/** Idle workers end after this time, in ms, to free memory. */
+/** Idle workers are terminated after this time, in ms, to free memory. */
 const IDLE_MS = 20_000;
-/** Time for a canceled worker to finish its piece, in ms. */
+/** A canceled worker that has not finished its piece after this time is terminated, in ms. */
 const CANCEL_MS = 300;
 
 export class WorkerPool {
   /** Idle workers. @type {Worker[]} */
   #idle = [];
-  #resting = 0;
-  /** The newest request of each slot. @type {Map<string, AbortController>} */
+  #idleTimer = 0;
+  /** Aborts the newest request of each slot. @type {Map<string, AbortController>} */
   #requests = new Map();
   #Dropped;
   #missing;
@@ -40,13 +40,13 @@ export class WorkerPool {
           replies[at] = await this.#call(worker, method, pieces[at], signal);
           onReply(at, replies[at]);
         }
-        this.#rest(worker);
+        this.#release(worker);
       } catch (error) {
         next = pieces.length;
         const timer = setTimeout(() => worker.terminate(), error instanceof this.#Dropped ? CANCEL_MS : 0);
         worker.onmessage = ({ data }) => {
           clearTimeout(timer);
-          if ("value" in data || "error" in data) this.#rest(worker);
+          if ("value" in data || "error" in data) this.#release(worker);
           else worker.terminate();
         };
         throw error;
@@ -59,11 +59,11 @@ export class WorkerPool {
   }
 
   /** See `Engine`. @param {string} slot @param {string} method @param {any[]} args @returns {Promise<any>} */
-  async consider(slot, method, args) {
+  async compute(slot, method, args) {
     this.#requests.get(slot)?.abort();
-    const own = new AbortController();
-    this.#requests.set(slot, own);
-    const [reply] = await this.distribute(method, [args], own.signal);
+    const controller = new AbortController();
+    this.#requests.set(slot, controller);
+    const [reply] = await this.distribute(method, [args], controller.signal);
     return reply;
   }
 
@@ -73,7 +73,7 @@ export class WorkerPool {
     const { signal } = new AbortController();
     try {
       const result = await work((method, ...args) => this.#call(worker, method, args, signal));
-      this.#rest(worker);
+      this.#release(worker);
       return result;
     } catch (error) {
       worker.terminate();
@@ -81,12 +81,12 @@ export class WorkerPool {
     }
   }
 
-  /** Keeps a worker for the next request. @param {Worker} worker */
-  #rest(worker) {
+  /** Makes a worker available for the next request. @param {Worker} worker */
+  #release(worker) {
     this.#idle.push(worker);
-    clearTimeout(this.#resting);
-    this.#resting = window.setTimeout(() => {
-      for (const each of this.#idle.splice(0)) each.terminate();
+    clearTimeout(this.#idleTimer);
+    this.#idleTimer = window.setTimeout(() => {
+      for (const idle of this.#idle.splice(0)) idle.terminate();
     }, IDLE_MS);
   }
 

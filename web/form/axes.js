@@ -4,40 +4,40 @@ import { MAX_CHANNELS } from "../state/limits.js";
 import { get, set } from "../state/paths.js";
 import { pointsFirst } from "./fields.js";
 import { motorItems } from "./motor.js";
-import { fieldsOfKind, labels, mostOf } from "./schema.js";
+import { fieldsOfKind, labels, maxLengthOf } from "./schema.js";
 import { removed } from "./structure.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
-/** @typedef {{axes: string, bus: string, whose: string, least: number}} Place  Paths of the axes and of their bus; what tells them from another controller's; fewest axes. */
+/** @typedef {{axes: string, bus: string, suffix: string, minAxes: number}} AxisList  Paths of the axes and of their bus; suffix of their names, such as ` of controller 2`; minimum number of axes. */
 
-/** @param {Kit} kit @param {Place} place @returns {Node[]} */
-export function axisItems(kit, place) {
+/** @param {Kit} kit @param {AxisList} list @returns {Node[]} */
+export function axisItems(kit, list) {
   const { samples, now } = kit;
   /** @type {any[]} */
-  const axes = get(now().scenario, place.axes) ?? [];
-  const fresh = () => ({
+  const axes = get(now().scenario, list.axes) ?? [];
+  const firstAxis = () => ({
     mechanics: { rotary: samples.mechanics.rotary },
     moves: [{ cosine: samples.moves.cosine }],
     motor: null,
   });
   return [
-    ...axes.map((_, index) => axisItem(kit, place, axes, index)),
+    ...axes.map((_, index) => axisItem(kit, list, axes, index)),
     button(
       "Add axis",
-      `Add axis${place.whose}`,
-      () => addAxis(kit, place, (now) => now[now.length - 1] ?? fresh()),
+      `Add axis${list.suffix}`,
+      () => addAxis(kit, list, (now) => now[now.length - 1] ?? firstAxis()),
       axes.length >= MAX_CHANNELS,
     ),
   ];
 }
 
-/** @param {Kit} kit @param {Place} place @param {any[]} axes @param {number} index */
-function axisItem(kit, place, axes, index) {
+/** @param {Kit} kit @param {AxisList} list @param {any[]} axes @param {number} index */
+function axisItem(kit, list, axes, index) {
   const { samples, become, append, block, item, kindSelect } = kit;
   const axis = axes[index];
-  const path = `${place.axes}[${index}]`;
-  const list = `${path}.moves`;
-  const name = `axis ${index}${place.whose}`;
+  const path = `${list.axes}[${index}]`;
+  const movesPath = `${path}.moves`;
+  const name = `axis ${index}${list.suffix}`;
   const kind = Object.keys(axis.mechanics)[0];
   const head = element(
     "div",
@@ -45,17 +45,19 @@ function axisItem(kit, place, axes, index) {
     kindSelect(`Mechanics of ${name}`, `${path}.mechanics`, kind, labels("Mechanics"), (selected) =>
       become(`${path}.mechanics`, "Mechanics", selected, samples.mechanics[selected]),
     ),
-    ...(axes.length > 1 ? [button("Copy to all", `Copy to all: ${name}`, () => copyToAll(kit, place, index))] : []),
-    button("Copy", `Copy ${name}`, () => addAxis(kit, place, (now) => now[index]), axes.length >= MAX_CHANNELS),
-    button("✕", `Remove ${name}`, () => removeAxis(kit, place, index), axes.length <= place.least),
+    ...(axes.length > 1 ? [button("Copy to all", `Copy to all: ${name}`, () => copyToAll(kit, list, index))] : []),
+    button("Copy", `Copy ${name}`, () => addAxis(kit, list, (now) => now[index]), axes.length >= MAX_CHANNELS),
+    button("✕", `Remove ${name}`, () => removeAxis(kit, list, index), axes.length <= list.minAxes),
   );
   const fields = block(`${path}.mechanics.${kind}`, fieldsOfKind("Mechanics", kind));
-  const moves = axis.moves.map((/** @type {any} */ _, /** @type {number} */ i) => moveItem(kit, list, axis.moves, i));
+  const moves = axis.moves.map((/** @type {any} */ _, /** @type {number} */ i) =>
+    moveItem(kit, movesPath, axis.moves, i),
+  );
   const add = button(
     "Add move",
     `Add move to ${name}`,
-    () => append(list, (last) => structuredClone(last ?? { cosine: samples.moves.cosine })),
-    axis.moves.length >= mostOf("Axis", "moves"),
+    () => append(movesPath, (last) => structuredClone(last ?? { cosine: samples.moves.cosine })),
+    axis.moves.length >= maxLengthOf("Axis", "moves"),
   );
   return item(
     `Axis ${index} · channel ${index}`,
@@ -65,9 +67,9 @@ function axisItem(kit, place, axes, index) {
   );
 }
 
-/** @param {Kit} kit @param {string} list @param {any[]} moves @param {number} index */
-function moveItem({ samples, become, raise, remove, block, item, kindSelect }, list, moves, index) {
-  const path = `${list}[${index}]`;
+/** @param {Kit} kit @param {string} movesPath @param {any[]} moves @param {number} index */
+function moveItem({ samples, become, raise, remove, block, item, kindSelect }, movesPath, moves, index) {
+  const path = `${movesPath}[${index}]`;
   const kind = Object.keys(moves[index])[0];
   const head = element(
     "div",
@@ -75,48 +77,48 @@ function moveItem({ samples, become, raise, remove, block, item, kindSelect }, l
     kindSelect(`Kind of move ${index + 1}`, path, kind, labels("Move"), (selected) =>
       become(path, "Move", selected, samples.moves[selected]),
     ),
-    button("↑", `Move ${index + 1} earlier`, () => raise(list, index), index === 0),
-    button("✕", `Remove move ${index + 1}`, () => remove(list, index), moves.length === 1),
+    button("↑", `Move ${index + 1} earlier`, () => raise(movesPath, index), index === 0),
+    button("✕", `Remove move ${index + 1}`, () => remove(movesPath, index), moves.length === 1),
   );
   const note = element("p", { class: "item-note", "data-note": path });
   const fields = block(`${path}.${kind}`, pointsFirst(fieldsOfKind("Move", kind)));
   return item(`Move ${index + 1}`, path, [head, ...fields, note], `Move.${kind}`);
 }
 
-/** Adds an axis, and a channel if needed. @param {Kit} kit @param {Place} place @param {(axes: any[]) => any} like */
-function addAxis({ change }, place, like) {
-  const path = `${place.bus}.channels`;
+/** Adds an axis, and a channel if needed. @param {Kit} kit @param {AxisList} list @param {(axes: any[]) => any} templateOf  The axis to copy. */
+function addAxis({ change }, list, templateOf) {
+  const path = `${list.bus}.channels`;
   change("", (scenario) => {
-    const axes = get(scenario, place.axes) ?? [];
-    const grown = [...axes, structuredClone(like(axes))];
+    const axes = get(scenario, list.axes) ?? [];
+    const grown = [...axes, structuredClone(templateOf(axes))];
     const channels = Math.max(Number(get(scenario, path)) || 1, grown.length);
-    return set(set(scenario, path, channels), place.axes, grown);
+    return set(set(scenario, path, channels), list.axes, grown);
   });
 }
 
-/** @param {Kit} kit @param {Place} place @param {number} index */
-function copyToAll({ change, now }, place, index) {
-  const others = get(now().scenario, place.axes).flatMap((/** @type {any} */ _, /** @type {number} */ at) =>
-    at === index ? [] : [[`${place.axes}[${at}]`, null]],
+/** @param {Kit} kit @param {AxisList} list @param {number} index */
+function copyToAll({ change, now }, list, index) {
+  const others = get(now().scenario, list.axes).flatMap((/** @type {any} */ _, /** @type {number} */ at) =>
+    at === index ? [] : [[`${list.axes}[${at}]`, null]],
   );
   change(
-    place.axes,
+    list.axes,
     (axes) => axes.map((/** @type {any} */ axis) => (axis === axes[index] ? axis : structuredClone(axes[index]))),
     others,
   );
 }
 
-/** Removes an axis; the spectrum keeps its axis or moves to a neighbor. @param {Kit} kit @param {Place} place @param {number} index */
-function removeAxis({ change, now }, place, index) {
+/** Removes an axis. The spectrum keeps its axis, or selects a neighbor of the removed one. @param {Kit} kit @param {AxisList} list @param {number} index */
+function removeAxis({ change, now }, list, index) {
   change(
     "",
     (scenario) => {
-      const left = get(scenario, place.axes).toSpliced(index, 1);
-      const without = set(scenario, place.axes, left);
-      if (!place.axes.startsWith("source")) return without;
+      const remaining = get(scenario, list.axes).toSpliced(index, 1);
+      const without = set(scenario, list.axes, remaining);
+      if (!list.axes.startsWith("source")) return without;
       const selected = without.analysis.axis;
-      return set(without, "analysis.axis", Math.min(selected > index ? selected - 1 : selected, left.length - 1));
+      return set(without, "analysis.axis", Math.min(selected > index ? selected - 1 : selected, remaining.length - 1));
     },
-    removed(place.axes, index, now()),
+    removed(list.axes, index, now()),
   );
 }

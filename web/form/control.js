@@ -1,5 +1,5 @@
 /** A field of the form: label, input or select, unit, hint and error. Invalid text is dispatched as a draft. */
-import { element, flash, say } from "../dom.js";
+import { element, flash, setText } from "../dom.js";
 import { get } from "../state/paths.js";
 import { termButton } from "./term_button.js";
 import { convert, isHex, isList, isSame, listTools, meaning, print, read } from "./values.js";
@@ -11,14 +11,14 @@ import { convert, isHex, isList, isSame, listTools, meaning, print, read } from 
  * @typedef {object} Control
  * @property {HTMLElement} root
  * @property {string} label
- * @property {(value: any, state: State) => void} show
- * @property {(message: string) => void} fail  Shows an error, or none.
+ * @property {(value: any, state: State) => void} show  Shows a value.
+ * @property {(message: string) => void} fail  Shows an error; empty clears it.
  * @property {() => void} focus
  */
 
-/** Maximum characters of an input next to its label. */
-const LONG = 12;
-let made = 0;
+/** A longer text moves its input below the label, in characters. */
+const MAX_INLINE = 12;
+let count = 0;
 
 /**
  * @param {string} path
@@ -27,12 +27,12 @@ let made = 0;
  * @returns {Control}
  */
 export function control(path, field, { dispatch, now }) {
-  const id = `f${made++}`;
+  const id = `f${count++}`;
   const error = element("p", { class: "error", id: `${id}-error` });
   const hint = element("p", { class: "hint", id: `${id}-hint` }, field.hint);
-  const also = element("span", { class: "also" });
+  const meaningNode = element("span", { class: "also" });
   const labels = { "aria-labelledby": field.unit ? `${id}-label ${id}-unit` : `${id}-label` };
-  const described = {
+  const inputAttributes = {
     id,
     ...labels,
     "aria-describedby": `${id}-error ${id}-hint`,
@@ -45,12 +45,12 @@ export function control(path, field, { dispatch, now }) {
     field.kind === "choice"
       ? element(
           "select",
-          described,
+          inputAttributes,
           ...Object.entries(field.choices ?? {}).map(([value, text]) => element("option", { value }, text)),
         )
       : long
-        ? element("textarea", { ...described, rows: String(field.rows ?? 4), spellcheck: "false" })
-        : element("input", { ...described, type: "text", spellcheck: "false" });
+        ? element("textarea", { ...inputAttributes, rows: String(field.rows ?? 4), spellcheck: "false" })
+        : element("input", { ...inputAttributes, type: "text", spellcheck: "false" });
   const unitSelect = field.units
     ? element(
         "select",
@@ -59,7 +59,7 @@ export function control(path, field, { dispatch, now }) {
       )
     : null;
   const unit = field.unit ? element("span", { class: "unit", id: `${id}-unit` }, field.unit) : null;
-  const chooser =
+  const tools =
     listTools(field)?.(
       field.label,
       (text) => {
@@ -69,20 +69,20 @@ export function control(path, field, { dispatch, now }) {
       },
       (message) => draft(message),
     ) ?? [];
-  const box = element("div", { class: "box" }, input, ...(unitSelect ? [unitSelect] : unit ? [unit] : []), ...chooser);
+  const box = element("div", { class: "box" }, input, ...(unitSelect ? [unitSelect] : unit ? [unit] : []), ...tools);
   const root = element(
     "div",
     { class: wide ? "field wide" : "field" },
     termButton(field.label, field.term, { id: `${id}-label`, tabindex: "-1" }),
     box,
-    also,
+    meaningNode,
     hint,
     error,
   );
 
   /** @type {any} */
   let value;
-  /** @type {string | null} What stands in the field and means `value`, though written otherwise. */
+  /** The text that the user typed for `value`, which may differ from its printed form. @type {string | null} */
   let typed = null;
 
   /** @param {any} next */
@@ -99,7 +99,7 @@ export function control(path, field, { dispatch, now }) {
     else edit(result.value);
   });
   input.addEventListener("change", () => {
-    // A field of cycles shows cycles after a time was typed.
+    // A typed time is replaced by its cycles.
     if (field.kind.endsWith("cycles") && !(path in now().drafts)) {
       typed = null;
       input.value = print(get(now().scenario, path), field);
@@ -112,37 +112,37 @@ export function control(path, field, { dispatch, now }) {
   });
 
   /** Hides an unused field, unless it has an error. @param {State} state */
-  function place({ scenario }) {
+  function updateVisibility({ scenario }) {
     const { when } = field;
-    const beside = when && (when.path ?? path.slice(0, path.length - field.key.length) + when.key);
-    root.hidden = when !== undefined && get(scenario, beside ?? "") !== when.is && error.textContent === "";
+    const conditionPath = when && (when.path ?? path.slice(0, path.length - field.key.length) + when.key);
+    root.hidden = when !== undefined && get(scenario, conditionPath ?? "") !== when.is && error.textContent === "";
   }
 
   return {
     root,
     label: field.label,
-    show(given, state) {
-      const next = given === undefined ? field.initial : given;
-      place(state);
-      const was = value;
+    show(shownValue, state) {
+      const next = shownValue === undefined ? field.initial : shownValue;
+      updateVisibility(state);
+      const before = value;
       value = next;
       const drafted = state.drafts[path];
       const text = drafted?.text ?? print(next, field);
-      const known = typed !== null ? read(typed, field, state, next) : null;
-      if (known && "value" in known && isSame(known.value, next) && input.value === typed) {
-        // The typed text stays.
+      const typedValue = typed !== null ? read(typed, field, state, next) : null;
+      if (typedValue && "value" in typedValue && isSame(typedValue.value, next) && input.value === typed) {
+        // The typed text means this value, so it stays.
       } else if (input.value !== text) {
         input.value = text;
         typed = null;
-        if (was !== undefined && document.activeElement !== input) flash(input);
+        if (before !== undefined && document.activeElement !== input) flash(input);
       }
-      root.classList.toggle("long", !wide && input.value.length > LONG);
+      root.classList.toggle("long", !wide && input.value.length > MAX_INLINE);
       if (unitSelect && next && typeof next === "object") unitSelect.value = Object.keys(next)[0];
-      say(also, meaning(next, field, state));
+      setText(meaningNode, meaning(next, field, state));
     },
     fail(message) {
-      say(error, message);
-      place(now());
+      setText(error, message);
+      updateVisibility(now());
       if (message) input.setAttribute("aria-invalid", "true");
       else input.removeAttribute("aria-invalid");
     },

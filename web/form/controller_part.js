@@ -11,7 +11,7 @@ import { SOURCES } from "./sources.js";
 /** The common fields of a bus. */
 const BUS_SIZE = ["channels", "slots", "step_period_cycles"];
 
-/** An additional controller with its bus. @returns {{own: Field[], bus: Field[], folded: Field[]}} */
+/** The fields of an additional controller and its bus; `folded` ones are rarely used. @returns {{own: Field[], bus: Field[], folded: Field[]}} */
 const controllerFields = () => ({
   own: fields("Controller").filter(({ kind }) => kind !== "lines"),
   bus: fields("Bus", BUS_SIZE),

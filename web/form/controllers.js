@@ -12,37 +12,40 @@ export function controllerItems(kit, scenario) {
   const { change, errorOf, samples } = kit;
   /** @type {any[]} */
   const all = scenario.controllers;
-  /** One like the controller of this index, or like the first. @param {number} index */
+  /** Adds a copy of an additional controller, or of the first one. @param {number} index */
   const add = (index) => change("", (now) => withAnother(now, now.controllers[index] ?? null, samples));
   return [
     errorOf("controllers"),
     ...(all.length > 0
-      ? kit.later((parts) => all.map((_, index) => parts.controllerPart(kit, scenario, index, add)))
+      ? kit.loadItems((parts) => all.map((_, index) => parts.controllerPart(kit, scenario, index, add)))
       : []),
     button("Add controller", "Add controller", () => add(all.length - 1), all.length >= MAX_ADDITIONAL_CONTROLLERS),
   ];
 }
 
 /**
- * One controller more, like another one or like the first, with an address of its own. On a raw line the first one
- * needs an address then, too.
- * @param {Scenario} scenario @param {any} like @param {import("./kit.js").Samples} samples
+ * The scenario with an additional controller: a copy of `template`, or of the first one, with an unused address. On a raw line
+ * the first one then needs an address, too.
+ * @param {Scenario} scenario @param {any} template @param {import("./kit.js").Samples} samples
  */
-function withAnother(scenario, like, samples) {
+function withAnother(scenario, template, samples) {
   const { line, source } = scenario;
-  const addressed = line.protocol === "raw" && line.address === null ? withAddress(scenario, 0) : scenario;
-  const taken = [line.address ?? 0, ...scenario.controllers.map((/** @type {any} */ controller) => controller.address)];
+  const scenarioWithAddress = line.protocol === "raw" && line.address === null ? withAddress(scenario, 0) : scenario;
+  const usedAddresses = [
+    line.address ?? 0,
+    ...scenario.controllers.map((/** @type {any} */ controller) => controller.address),
+  ];
   const address =
-    Array.from({ length: 255 }, (_, i) => i).find((i) => i > taken[0] && !taken.includes(i)) ??
-    Array.from({ length: 255 }, (_, i) => i).find((i) => !taken.includes(i));
+    Array.from({ length: 255 }, (_, i) => i).find((i) => i > usedAddresses[0] && !usedAddresses.includes(i)) ??
+    Array.from({ length: 255 }, (_, i) => i).find((i) => !usedAddresses.includes(i));
   const first = { ...samples.controller, bus: scenario.bus, axes: source.motion?.axes ?? [] };
-  const made = { ...structuredClone(like ?? first), address };
+  const added = { ...structuredClone(template ?? first), address };
   const kind = Object.keys(source)[0];
-  if (kind === "packets") made.packets = SOURCES.packets.additional(addressed, samples, made).packets;
-  return { ...addressed, controllers: [...scenario.controllers, made] };
+  if (kind === "packets") added.packets = SOURCES.packets.additional(scenarioWithAddress, samples, added).packets;
+  return { ...scenarioWithAddress, controllers: [...scenario.controllers, added] };
 }
 
-/** The first controller gets an address, and its packets begin with it. @param {Scenario} scenario @param {number} address */
+/** The scenario with an address for the first controller, also in its packets. @param {Scenario} scenario @param {number} address */
 function withAddress(scenario, address) {
   const { packets } = scenario.source;
   const source = packets

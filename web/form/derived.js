@@ -1,5 +1,5 @@
-/** Shows the scenario's name and note, and the numbers that are derived from it. */
-import { byId, element, fill, flash, say } from "../dom.js";
+/** Shows the name and note of the scenario, and its derived values. */
+import { byId, element, fill, flash, setText } from "../dom.js";
 import { derivedShown } from "../state/queries.js";
 import { derivedRows, moveNote } from "./derived_rows.js";
 import { documents } from "./schema.js";
@@ -10,8 +10,8 @@ import { termButton } from "./term_button.js";
 /** A note with links to the papers that it cites. @param {string} note @returns {(Node | string)[]} */
 function noteNodes(note) {
   const papers = Object.entries(documents());
-  const names = papers.map(([, { short }]) => short.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"));
-  const parts = names.length > 0 ? note.split(new RegExp(`(${names.join("|")})`)) : [note];
+  const patterns = papers.map(([, { short }]) => short.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"));
+  const parts = patterns.length > 0 ? note.split(new RegExp(`(${patterns.join("|")})`)) : [note];
   return parts.map((part) => {
     const [id, paper] = papers.find(([, { short }]) => short === part) ?? [];
     return paper ? element("a", { href: `help.html#paper-${id}`, target: "_blank", title: paper.title }, part) : part;
@@ -22,7 +22,7 @@ function noteNodes(note) {
 export function showAbout({ scenario }) {
   const root = byId("about");
   root.hidden = !scenario.title && !scenario.note;
-  say(/** @type {Element} */ (root.querySelector("h2")), String(scenario.title ?? ""));
+  setText(/** @type {Element} */ (root.querySelector("h2")), String(scenario.title ?? ""));
   const note = /** @type {Element} */ (root.querySelector("p"));
   if (note.textContent !== scenario.note) fill(note, ...noteNodes(String(scenario.note ?? "")));
 }
@@ -53,7 +53,7 @@ export function showDerived(state, form) {
       const [, text, mark] = rows[index];
       value.classList.toggle("over", mark === "over");
       if (value.textContent === text) continue;
-      say(value, text);
+      setText(value, text);
       flash(value);
     }
   }

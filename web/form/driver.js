@@ -20,7 +20,7 @@ export function driverItems(kit, { driver_timing: driver }, sheets) {
       () =>
         kind === "none"
           ? null
-          : // Rules of one's own begin with those of the driver that was selected.
+          : // Custom rules start with those of the selected driver.
             kind === "rules"
             ? { rules: { ...kit.samples.rules, ...known?.rules } }
             : { preset: kind },
@@ -32,7 +32,7 @@ export function driverItems(kit, { driver_timing: driver }, sheets) {
   return known ? [...head, element("p", { class: "item-note" }, summary(known))] : head;
 }
 
-/** What a driver requires, and where that stands. @param {DriverSheet} sheet */
+/** The requirements of a driver and their source. @param {DriverSheet} sheet */
 function summary({ rules, source }) {
   const times = fields("TimingRules").flatMap(({ key, label }) => {
     const ns = rules[key];

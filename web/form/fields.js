@@ -3,30 +3,29 @@ import { field, fields, labelOf } from "./schema.js";
 
 /** @typedef {import("./field.js").Field} Field */
 
-/** Packets, one a line: of the host, and of an additional controller. @param {"Packets" | "Controller"} group @returns {Field} */
+/** The field of packets, one per line: of the host, or of an additional controller. @param {"Packets" | "Controller"} group @returns {Field} */
 export const packetLines = (group) => ({ ...field(group, "packets"), rows: 8 });
 
-/** The level of a glitch is selected. @returns {Field[]} */
+/** The fields of a glitch; its level is a choice. @returns {Field[]} */
 export const glitchFields = () =>
   fields("Glitch").map((each) =>
     each.key === "level" ? { ...each, kind: "choice", choices: { 0: "0 (low)", 1: "1 (high)" } } : each,
   );
 
-/** What of a bus counts where segments run it; and nothing of the line does. */
+/** The fields of a bus that affect segments. */
 export const OF_SEGMENTS = ["channels", "pulse_width_cycles", "dir_setup_cycles", "dir_hold_cycles"];
 
-/** A curve's points come before what is said of them. @param {Field[]} fields */
+/** Sorts the points of a curve before its other fields. @param {Field[]} fields */
 export const pointsFirst = (fields) =>
   fields
     .map((each) => (each.kind === "points" ? { ...each, rows: 8 } : each))
     .sort((a, b) => Number(b.kind === "points") - Number(a.kind === "points"));
 
-/** What is said of the experiment. */
+/** Name and note of the experiment. */
 const ABOUT = ["title", "note"];
 
 /**
- * The sections beside the source. Keys are paths below the section's own; a group is folded away.
- * `onLine` is of use only where something is sent.
+ * The sections after the source. A group is folded at first. `onLine`: the section only affects scenarios that send something.
  * @typedef {{path: string, fields: Field[]}} Block
  * @returns {{title: string, open: boolean, onLine?: boolean, blocks: Block[], group?: {title: string} & Block, list?: "glitches" | "controllers" | "driver_timing" | "plant"}[]}
  */

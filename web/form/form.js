@@ -1,4 +1,4 @@
-/** The form, built from `fields.js` and `sources.js`. It is only rebuilt if the shape of the scenario changes. */
+/** The form, built from `fields.js` and `sources.js`. It is rebuilt only if the shape of the scenario changes (`shapeOf`). */
 
 import { byId, element, fill } from "../dom.js";
 import { get } from "../state/paths.js";
@@ -7,9 +7,10 @@ import { controllerItems } from "./controllers.js";
 import { showAbout, showDerived } from "./derived.js";
 import { driverItems } from "./driver.js";
 import { glitchFields, OF_SEGMENTS, sections } from "./fields.js";
+import { saveFocus } from "./focus.js";
 import { createKit } from "./kit.js";
 import { plantItems } from "./plant.js";
-import { createPointerHold, keepFocusInSight, showHints } from "./pointer.js";
+import { createPointerHold, keepFocusVisible, showHints } from "./pointer.js";
 import { showProblems } from "./problems.js";
 import { labelOf, labels, termOf } from "./schema.js";
 import { isUsed, needsRemedies, shapeOf } from "./shape.js";
@@ -22,7 +23,7 @@ import { SOURCES, withSource } from "./sources.js";
 /**
  * @param {{root: HTMLElement, samples: import("./kit.js").Samples, drivers: import("../state/types.js").DriverSheet[],
  *   dispatch: (message: import("../state/message.js").Message) => void,
- *   remedies: Parameters<typeof import("./remedies.js").showOffers>[0]}} given
+ *   remedies: Parameters<typeof import("./remedies.js").showOffers>[0]}} page
  */
 export function createForm({ root, samples, drivers, dispatch, remedies }) {
   let shape = "";
@@ -31,23 +32,23 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
   const scroller = byId("sheet-scroll");
   const pointer = createPointerHold(byId("sheet"), () => draw(state));
   showHints(root);
-  keepFocusInSight(scroller);
+  keepFocusVisible(scroller);
   /** The state that the form shows. @type {State | undefined} */
   let drawn;
-  const kit = createKit({ samples, now: () => state, dispatch, anew });
+  const kit = createKit({ samples, now: () => state, dispatch, rebuild });
 
   /** @param {Scenario} scenario @returns {Node[]} */
-  function source(scenario) {
+  function sourceItems(scenario) {
     const kind = Object.keys(scenario.source)[0];
-    // The first of them is in a part of the core that may not be there yet.
+    // The schema of stand-alone controllers may not be loaded yet.
     const kinds = { standalone: "Stand-alone controller", ...labels("Source") };
     const select = kit.kindSelect(labelOf("Scenario", "source"), "source", kind, kinds, (selected) => {
       const change = () => kit.change("", (now) => withSource(now, selected, samples), replacedBySource(scenario));
       const { load } = SOURCES[selected];
       if (!load) return change();
       const { scenario: before } = state;
-      // What was changed while it came is newer.
-      return load(kit).then(() => state.scenario === before && change(), refused);
+      // A change of the user while it loads takes precedence.
+      return load(kit).then(() => state.scenario === before && change(), showLoadError);
     });
     return [
       kit.errorOf("source"),
@@ -57,7 +58,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     ];
   }
 
-  /** Lists whose length changes, by the name that a section gives them. @type {{[list: string]: (scenario: Scenario) => Node[]}} */
+  /** Content of the sections with a `list`. @type {{[list: string]: (scenario: Scenario) => Node[]}} */
   const LISTS = {
     glitches: (scenario) =>
       kit.rows(
@@ -74,27 +75,10 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     plant: (scenario) => plantItems(kit, scenario),
   };
 
-  /** Where the focus is, to find it again in the form built anew: a field by its path, a button by what it does. @param {HTMLElement} active */
-  function focusOf(active) {
-    const { path } = active.dataset;
-    const selector = path
-      ? `[data-path="${CSS.escape(path)}"]`
-      : `button[aria-label="${CSS.escape(active.getAttribute("aria-label") ?? "")}"]`;
-    return { selector, nth: [...root.querySelectorAll(selector)].indexOf(active), place: reachable().indexOf(active) };
-  }
-
-  /** What the focus can go to, in the order of the form. @returns {HTMLElement[]} */
-  function reachable() {
-    return [...root.querySelectorAll("button:enabled, input:enabled, select:enabled, textarea:enabled, summary")].map(
-      (each) => /** @type {HTMLElement} */ (each),
-    );
-  }
-
   /** @param {Scenario} scenario */
   function build(scenario) {
     kit.clear();
-    const active = /** @type {HTMLElement | null} */ (document.activeElement);
-    const focus = active && root.contains(active) ? focusOf(active) : null;
+    const restoreFocus = saveFocus(root);
     const isLineless = hasNoLine(scenario);
     const shown = sections().filter(({ onLine }) => !(onLine && isLineless) || scenario.controllers.length > 0);
     const parts = shown.map(({ title, open, blocks, group, list }) =>
@@ -111,20 +95,16 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
         ...(list ? LISTS[list](scenario) : []),
       ]),
     );
-    fill(root, kit.part("Source", true, source(scenario)), ...parts);
-    if (!focus) return;
-    const again = /** @type {HTMLElement | undefined} */ (root.querySelectorAll(focus.selector)[focus.nth]);
-    // What was removed with the focus on it leaves it to what stands there now.
-    const there = reachable();
-    (again?.matches(":enabled, summary") ? again : there[Math.min(focus.place, there.length - 1)])?.focus();
+    fill(root, kit.part("Source", true, sourceItems(scenario)), ...parts);
+    restoreFocus();
   }
 
   /** @param {Scenario} scenario */
-  const take = (scenario) => kit.change("", () => scenario);
-  /** What puts things right; it loads when something is wrong for the first time. @type {Promise<typeof import("./remedies.js")> | null} */
+  const replaceScenario = (scenario) => kit.change("", () => scenario);
+  /** Remedies load with the first problem. @type {Promise<typeof import("./remedies.js")> | null} */
   let loading = null;
-  /** @param {(fixes: typeof import("./remedies.js")) => void} show */
-  function putRight(show) {
+  /** Shows remedies once they are loaded. @param {(remedies: typeof import("./remedies.js")) => void} show */
+  function withRemedies(show) {
     if (!loading && !needsRemedies(state)) return;
     loading ??= import("./remedies.js");
     loading.then(show).catch(() => {
@@ -132,30 +112,33 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     });
   }
 
-  /** What is under the pointer stays where it is until it is let go. Whoever waits for the form waits for what it loads. @param {State} next */
+  /** Draws a state, unless the pointer is pressed. Returns the promise of the parts that the form loads. @param {State} next */
   function render(next) {
     state = next;
-    if (!pointer.holds()) draw(next);
+    if (!pointer.isPressed()) draw(next);
     return kit.loading();
   }
 
-  /** Another kind of source could not be loaded. @param {Error} error */
-  function refused({ message }) {
-    dispatch({ type: "notice", notice: { kind: "error", text: `The source is unchanged: ${message}`, place: null } });
-    anew();
+  /** @param {Error} error */
+  function showLoadError({ message }) {
+    dispatch({
+      type: "notice",
+      notice: { kind: "error", text: `The source is unchanged: ${message}`, location: null },
+    });
+    rebuild();
   }
 
-  /** A part of the form that had to be loaded is there. What is being typed is not taken away: it waits for the next field. */
-  function anew() {
+  /** Rebuilds the form after a part of it has loaded. While the user types, it waits until the field loses the focus. */
+  function rebuild() {
     const active = document.activeElement;
     if (root.contains(active) && active?.matches("input:not([type=checkbox]), textarea")) {
-      active.addEventListener("blur", () => setTimeout(buildAnew), { once: true });
-    } else buildAnew();
+      active.addEventListener("blur", () => setTimeout(rebuildNow), { once: true });
+    } else rebuildNow();
   }
 
-  function buildAnew() {
+  function rebuildNow() {
     [shape, drawn] = ["", undefined];
-    if (!pointer.holds()) draw(state);
+    if (!pointer.isPressed()) draw(state);
   }
 
   /** @param {State} next */
@@ -169,15 +152,15 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
       build(next.scenario);
     }
     if (before?.scenario !== next.scenario || before?.drafts !== next.drafts || before?.derived !== next.derived) {
-      for (const [path, made] of kit.controls) made.show(get(next.scenario, path), next);
+      for (const [path, control] of kit.controls) control.show(get(next.scenario, path), next);
     }
     if (before?.scenario !== next.scenario) showAbout(next);
-    // Another experiment begins with what it is about.
+    // The name and note of another experiment are at the top.
     if (before && before.origin !== next.origin && next.origin !== "own") scroller.scrollTop = 0;
     const validated = blockedBy(next) !== "unvalidated";
     if (validated && (before?.validation !== next.validation || before?.drafts !== next.drafts)) {
       showProblems(next, kit.controls, kit.groups);
-      putRight(({ showOffers }) => showOffers(remedies, () => state, take, pointer.released));
+      withRemedies(({ showOffers }) => showOffers(remedies, () => state, replaceScenario, pointer.released));
     }
     if (
       before?.result !== next.result ||
@@ -185,7 +168,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
       before?.scenario !== next.scenario ||
       before?.drafts !== next.drafts
     ) {
-      putRight(({ showRemedy }) => showRemedy(state, drivers, take));
+      withRemedies(({ showRemedy }) => showRemedy(state, drivers, replaceScenario));
     }
     if (
       validated &&

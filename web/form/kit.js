@@ -1,10 +1,10 @@
-/** Building blocks of the form: fields, parts, fieldsets, lists and choices of kinds. */
+/** Building blocks of the form: fields, parts, fieldsets, lists and selects of kinds. */
 
-import { button, element, say } from "../dom.js";
+import { button, element, setText } from "../dom.js";
 import { control } from "./control.js";
 import { createStructure } from "./structure.js";
 import { termButton } from "./term_button.js";
-import { isList, takeLists } from "./values.js";
+import { isList, setLists } from "./values.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./field.js").Field} Field */
@@ -13,54 +13,55 @@ import { isList, takeLists } from "./values.js";
  * @typedef {{moves: {[kind: string]: any}, mechanics: {[kind: string]: any}, sources: {[kind: string]: any},
  *   glitch: any, send: any, controller: any, rules: any, motor: any,
  *   plant: any, protection: any, plant_motor: any,
- *   groups: {[kind: string]: any}, until: any, homing: any, soft_limits: any, axis: any, input: any}} Samples  One of everything, with the core's defaults.
+ *   groups: {[kind: string]: any}, until: any, homing: any, soft_limits: any, axis: any, input: any}} Samples  One item of each kind with its defaults.
  */
 /** @typedef {ReturnType<typeof createKit>} Kit */
 /** @typedef {typeof import("./additional_parts.js").ADDITIONAL_PARTS} AdditionalParts */
 
 /** @param {{samples: Samples, now: () => State, dispatch: (message: import("../state/message.js").Message) => void,
- *   anew: () => void}} given  `anew` builds the form once more. */
-export function createKit({ samples, now, dispatch, anew }) {
+ *   rebuild: () => void}} form */
+export function createKit({ samples, now, dispatch, rebuild }) {
   /** @type {Map<string, Control>} */
   const controls = new Map();
-  /** @type {Map<string, HTMLElement>} Errors of whole axes, moves and controllers. */
+  /** Error elements of axes, moves and controllers, by path. @type {Map<string, HTMLElement>} */
   const groups = new Map();
-  /** @type {Map<string, boolean>} Which parts stand open. */
+  /** Whether a part is open, by its title. @type {Map<string, boolean>} */
   const open = new Map();
 
   const structure = createStructure({ now, dispatch });
 
-  /** What makes the parts that few experiments have, once it has loaded. @type {AdditionalParts | null} */
+  /** Parts that few experiments need, loaded on demand. @type {AdditionalParts | null} */
   let parts = null;
   /** @type {Promise<void> | null} */
   let loading = null;
 
-  /** Such a part; until it can be made a note stands in its place, and the form is built once more. @param {(parts: AdditionalParts) => Node[]} make */
-  function later(make) {
+  /** Items of an additional part. While it loads they are a note, and afterwards the form is rebuilt. @param {(parts: AdditionalParts) => Node[]} make */
+  function loadItems(make) {
     if (parts) return make(parts);
     const note = element("p", { class: "item-note" }, "Loading fields…");
     loading ??= import("./additional_parts.js")
       .then((loaded) => {
         parts = loaded.ADDITIONAL_PARTS;
-        takeLists(parts.lists);
+        setLists(parts.lists);
       })
       .finally(() => {
         loading = null;
       });
-    const missing = () => say(note, "The fields could not be loaded. Check the network, then undo or reload the page.");
-    // Building it takes all notes away.
-    loading.then(() => note.isConnected && anew(), missing);
+    const showError = () =>
+      setText(note, "The fields could not be loaded. Check the network, then undo or reload the page.");
+    // A rebuilt form no longer has the note.
+    loading.then(() => note.isConnected && rebuild(), showError);
     return [note];
   }
 
   /** @param {string} path @param {Field} field @returns {Node} */
   function row(path, field) {
     const make = () => {
-      const made = control(path, field, { dispatch, now });
-      controls.set(path, made);
-      return made.root;
+      const created = control(path, field, { dispatch, now });
+      controls.set(path, created);
+      return created.root;
     };
-    return isList(field) ? later(() => [make()])[0] : make();
+    return isList(field) ? loadItems(() => [make()])[0] : make();
   }
 
   /** The fields below a path. @param {string} path @param {Field[]} fields */
@@ -73,7 +74,7 @@ export function createKit({ samples, now, dispatch, anew }) {
     return error;
   }
 
-  /** What can be folded away. @param {string} title @param {boolean} isOpen @param {Node[]} children */
+  /** A part that can be folded. @param {string} title @param {boolean} isOpen @param {Node[]} children */
   function part(title, isOpen, children) {
     const details = element(
       "details",
@@ -86,7 +87,7 @@ export function createKit({ samples, now, dispatch, anew }) {
     return details;
   }
 
-  /** A fieldset that can be moved out. @param {string} legend @param {string} path @param {Node[]} children @param {string} term  What explains it. */
+  /** A fieldset with an error and a help term. @param {string} legend @param {string} path @param {Node[]} children @param {string} term  Id of its help text. */
   function item(legend, path, children, term) {
     return element(
       "fieldset",
@@ -97,7 +98,7 @@ export function createKit({ samples, now, dispatch, anew }) {
     );
   }
 
-  /** A choice of kinds. @param {string} label @param {string} path @param {string} kind @param {{[kind: string]: string}} kinds @param {(kind: string) => void} choose */
+  /** A select of kinds. @param {string} label @param {string} path @param {string} kind @param {{[kind: string]: string}} kinds @param {(kind: string) => void} choose */
   function kindSelect(label, path, kind, kinds, choose) {
     const select = element("select", { "aria-label": label, "aria-keyshortcuts": "F1", "data-path": `${path}#kind` });
     for (const [value, text] of Object.entries(kinds)) select.append(element("option", { value }, text));
@@ -106,7 +107,7 @@ export function createKit({ samples, now, dispatch, anew }) {
     return select;
   }
 
-  /** A part of the scenario that there may be or not. @param {string} path @param {string} label @param {boolean} on @param {any} sample */
+  /** A checkbox for an optional part of the scenario. @param {string} path @param {string} label @param {boolean} on @param {any} sample */
   function toggle(path, label, on, sample) {
     const check = element("input", { type: "checkbox", "data-path": `${path}#kind` });
     check.checked = on;
@@ -116,8 +117,8 @@ export function createKit({ samples, now, dispatch, anew }) {
     return element("label", { class: "check" }, check, label);
   }
 
-  /** A list of equal rows. @param {string} path @param {any[]} values @param {Field[]} fields @param {string} name @param {(last: any) => any} fresh  The row after another, or the first. @param {string} term */
-  function rows(path, values, fields, name, fresh, term) {
+  /** A list of rows with the same fields. @param {string} path @param {any[]} values @param {Field[]} fields @param {string} name @param {(last: any) => any} createRow  Creates the row after the last one, or the first. @param {string} term */
+  function rows(path, values, fields, name, createRow, term) {
     const items = values.map((_, index) =>
       item(
         `${name} ${index + 1}`,
@@ -131,11 +132,11 @@ export function createKit({ samples, now, dispatch, anew }) {
     );
     return [
       ...items,
-      button(`Add ${name.toLowerCase()}`, `Add ${name.toLowerCase()}`, () => structure.append(path, fresh)),
+      button(`Add ${name.toLowerCase()}`, `Add ${name.toLowerCase()}`, () => structure.append(path, createRow)),
     ];
   }
 
-  /** Begins anew. */
+  /** Forgets all controls before the form is rebuilt. */
   function clear() {
     controls.clear();
     groups.clear();
@@ -154,10 +155,10 @@ export function createKit({ samples, now, dispatch, anew }) {
     toggle,
     rows,
     clear,
-    later,
-    /** What is being loaded, if anything is. */
+    loadItems,
+    /** The promise of the parts that are loading, if any. */
     loading: () => loading,
-    anew,
+    rebuild,
     controls,
     groups,
   };

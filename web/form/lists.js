@@ -9,7 +9,7 @@ import { printSegments, readSegments } from "./segments.js";
  * @typedef {object} List
  * @property {(value: any) => string} print
  * @property {(text: string) => {value: any} | {message: string}} read
- * @property {(label: string, put: (text: string) => void, refuse: (message: string) => void) => Node[]} [tools]  Buttons next to the field.
+ * @property {(label: string, setText: (text: string) => void, showError: (message: string) => void) => Node[]} [tools]  Buttons next to the field.
  * @typedef {{[kind: string]: List}} Lists
  */
 
@@ -23,32 +23,32 @@ export const LISTS = {
 /** Maximum bytes of a file whose text goes into a field. */
 const MAX_FILE = 1 << 20;
 
-/** A button that puts a file's text into a field. @param {string} label @param {(text: string) => void} put @param {(message: string) => void} refuse */
-function fileChooser(label, put, refuse) {
+/** A button that puts a file's text into a field. @param {string} label @param {(text: string) => void} setText @param {(message: string) => void} showError */
+function fileChooser(label, setText, showError) {
   const file = element("input", { type: "file", accept: ".csv,.txt,.tsv,text/csv,text/plain", hidden: "" });
   file.addEventListener("change", async () => {
     const [selected] = file.files ?? [];
     file.value = "";
     if (!selected) return;
     if (selected.size > MAX_FILE)
-      return refuse(`${selected.name} has ${selected.size} bytes; give at most ${MAX_FILE}.`);
+      return showError(`${selected.name} has ${selected.size} bytes; use at most ${MAX_FILE}.`);
     try {
-      put(await selected.text());
+      setText(await selected.text());
     } catch {
-      refuse(`${selected.name} cannot be read.`);
+      showError(`${selected.name} cannot be read; choose another file.`);
     }
   });
   return [button("Choose CSV…", `Choose a CSV for ${label}`, () => file.click()), file];
 }
 
-/** One whole number a line, with every digit. @param {string} text @returns {{value: (number | bigint)[]} | {message: string}} */
+/** Reads one whole number per line, with all digits. @param {string} text @returns {{value: (number | bigint)[]} | {message: string}} */
 function readWholes(text) {
-  const read = text
+  const results = text
     .split("\n")
     .filter((line) => line.trim() !== "")
     .map((line) =>
       WHOLE.test(line.trim()) ? { value: whole(line.trim()) } : parseNumber(line, "", { integer: true }),
     );
-  const wrong = read.find((each) => "message" in each);
-  return wrong ?? { value: read.map((each) => ("value" in each ? each.value : 0)) };
+  const wrong = results.find((each) => "message" in each);
+  return wrong ?? { value: results.map((each) => ("value" in each ? each.value : 0)) };
 }

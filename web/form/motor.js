@@ -3,7 +3,7 @@ import { element } from "../dom.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
 
-/** The motor of an axis, or none. @param {Kit} kit @param {string} path  The axis'. @param {any} axis @param {string} name @returns {Node[]} */
+/** The motor of an axis, or none. @param {Kit} kit @param {string} path  Of the axis. @param {any} axis @param {string} name @returns {Node[]} */
 export function motorItems(kit, path, { motor }, name) {
   const at = `${path}.motor`;
   const check = element("input", { type: "checkbox", "data-path": `${at}#kind`, "aria-label": `Motor of ${name}` });
@@ -16,6 +16,6 @@ export function motorItems(kit, path, { motor }, name) {
   return [
     kit.errorOf(at),
     label,
-    ...(motor ? kit.later((parts) => parts.motorFields(kit, at, Boolean(plant), name)) : []),
+    ...(motor ? kit.loadItems((parts) => parts.motorFields(kit, at, Boolean(plant), name)) : []),
   ];
 }

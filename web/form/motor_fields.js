@@ -3,8 +3,8 @@ import { fields } from "./schema.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
 
-/** What the torque hangs on; the rest counts in a plant alone. */
-const OF_TORQUE = [
+/** Fields that affect the torque-speed curve; the others only affect a simulated motor. */
+const TORQUE_FIELDS = [
   "rated_current_a",
   "resistance_ohm",
   "inductance_mh",
@@ -17,18 +17,18 @@ const OF_TORQUE = [
   "working_rate_hz",
 ];
 
-/** The fields of a motor. @param {Kit} kit @param {string} at  Its path. @param {boolean} isDriven  Whether there is a plant. @param {string} name @returns {Node[]} */
-export function motorFields(kit, at, isDriven, name) {
+/** The fields of a motor. @param {Kit} kit @param {string} at  Its path. @param {boolean} isSimulated @param {string} name @returns {Node[]} */
+export function motorFields(kit, at, isSimulated, name) {
   const all = fields("Motor");
-  const rest = all.filter(({ key }) => !OF_TORQUE.includes(key));
+  const simulationFields = all.filter(({ key }) => !TORQUE_FIELDS.includes(key));
   return [
     ...kit.block(
       at,
-      all.filter(({ key }) => OF_TORQUE.includes(key)),
+      all.filter(({ key }) => TORQUE_FIELDS.includes(key)),
     ),
-    ...(isDriven
+    ...(isSimulated
       ? [
-          kit.part(`Friction and coupling of ${name}`, false, kit.block(at, rest)),
+          kit.part(`Friction and coupling of ${name}`, false, kit.block(at, simulationFields)),
           kit.part(`Driver of ${name}`, false, kit.block(`${at}.driver`, fields("Drive"))),
         ]
       : []),

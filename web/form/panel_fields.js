@@ -3,12 +3,12 @@
 /** @typedef {import("./kit.js").Kit} Kit */
 /** @typedef {import("./field.js").Field} Field */
 
-/** What can be selected where the schema has 0 and 1. */
+/** Choices for fields whose schema has 0 and 1. */
 export const CHOICES = { level: { 0: "0", 1: "1" } };
 
-/** Fields with the warning of a value that is valid but may not be meant. @param {string} path @param {Field[]} given @returns {Field[]} */
-export function withWarnings(path, given) {
-  return given.map((each) => ({
+/** Adds the warnings of the validation to fields. @param {string} path @param {Field[]} fields @returns {Field[]} */
+export function withWarnings(path, fields) {
+  return fields.map((each) => ({
     ...each,
     also: (value, state) => {
       const at = `${path}.${each.key}`;
@@ -18,11 +18,11 @@ export function withWarnings(path, given) {
   }));
 }
 
-/** Fields; a level of 0 or 1 is selected. @param {Kit} kit @param {string} path @param {Field[]} given */
-export function choiceBlock(kit, path, given) {
+/** A block in which a level of 0 or 1 is a choice. @param {Kit} kit @param {string} path @param {Field[]} fields */
+export function choiceBlock(kit, path, fields) {
   return kit.block(
     path,
-    withWarnings(path, given).map((each) =>
+    withWarnings(path, fields).map((each) =>
       each.key === "level" ? { ...each, kind: "choice", choices: CHOICES.level } : each,
     ),
   );

@@ -3,5 +3,5 @@
 /** @param {import("./kit.js").Kit} kit @param {import("../state/types.js").Scenario} scenario @returns {Node[]} */
 export function plantItems(kit, { plant }) {
   const on = kit.toggle("plant", "Simulate motors", Boolean(plant), kit.samples.plant);
-  return [kit.errorOf("plant"), on, ...(plant ? kit.later((parts) => parts.plantFields(kit, plant)) : [])];
+  return [kit.errorOf("plant"), on, ...(plant ? kit.loadItems((parts) => parts.plantFields(kit, plant)) : [])];
 }

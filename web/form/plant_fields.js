@@ -1,7 +1,7 @@
 /** The fields of a plant: supply, sensors, protection and motors. */
 import { button } from "../dom.js";
 import { motorFields } from "./motor_fields.js";
-import { fields, labelOf, mostOf } from "./schema.js";
+import { fields, labelOf, maxLengthOf } from "./schema.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
 
@@ -9,11 +9,11 @@ import { fields, labelOf, mostOf } from "./schema.js";
 export function plantFields(kit, plant) {
   const group = (/** @type {string} */ name, /** @type {string} */ of) =>
     kit.part(labelOf("PlantSettings", name), false, kit.block(`plant.${name}`, fields(of)));
-  const guard = plant.protection ?? null;
+  const protection = plant.protection ?? null;
   return [
     ...kit.block("plant", fields("PlantSettings")),
-    kit.toggle("plant.protection", "Stop at an overload", guard !== null, kit.samples.protection),
-    ...(guard ? kit.block("plant.protection", fields("Protection")) : []),
+    kit.toggle("plant.protection", "Stop at an overload", protection !== null, kit.samples.protection),
+    ...(protection ? kit.block("plant.protection", fields("Protection")) : []),
     group("current_sensor", "CurrentSensor"),
     group("encoder", "Encoder"),
     kit.part("Motors of channels without an axis", (plant.motors ?? []).length > 0, motors(kit, plant.motors ?? [])),
@@ -41,7 +41,7 @@ function motors(kit, list) {
       "Add motor",
       "Add motor",
       () => kit.append(at, (last) => structuredClone(last ?? kit.samples.plant_motor)),
-      list.length >= mostOf("PlantSettings", "motors"),
+      list.length >= maxLengthOf("PlantSettings", "motors"),
     ),
   ];
 }

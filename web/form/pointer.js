@@ -1,54 +1,54 @@
-/** Keeps fields in place under focus and pointer. */
-import { byId, say } from "../dom.js";
+/** Keeps fields under the focus and the pointer at their positions. */
+import { byId, setText } from "../dom.js";
 
-/** The hint of the field that has the focus, where it moves nothing; to a screen reader the field itself describes it. @param {HTMLElement} root */
+/** Shows the hint of the focused field below the form, so that no field moves. @param {HTMLElement} root */
 export function showHints(root) {
-  const place = byId("field-hint");
+  const hint = byId("field-hint");
   root.addEventListener("focusin", ({ target }) => {
     const field = /** @type {Element} */ (target).closest(".field:not(.wide)");
-    say(place, field?.querySelector(".hint")?.textContent ?? "");
+    setText(hint, field?.querySelector(".hint")?.textContent ?? "");
   });
-  root.addEventListener("focusout", () => say(place, ""));
+  root.addEventListener("focusout", () => setText(hint, ""));
 }
 
-/** The field that has the focus stays in sight when what is said under the form takes room from it. @param {HTMLElement} scroller */
-export function keepFocusInSight(scroller) {
+/** Keeps the focused field visible when messages below the form reduce its height. @param {HTMLElement} scroller */
+export function keepFocusVisible(scroller) {
   let height = scroller.clientHeight;
   new ResizeObserver(() => {
     const before = height;
     height = scroller.clientHeight;
     const active = document.activeElement;
-    const becameLower = height < before && scroller.scrollHeight > height;
-    if (!becameLower || !active || !scroller.contains(active)) return;
-    const [field, sight] = [active.getBoundingClientRect(), scroller.getBoundingClientRect()];
-    // What the user had scrolled away from stays away.
-    if (field.top >= sight.top && field.bottom <= sight.top + before) active.scrollIntoView({ block: "nearest" });
+    const shrank = height < before && scroller.scrollHeight > height;
+    if (!shrank || !active || !scroller.contains(active)) return;
+    const [field, visible] = [active.getBoundingClientRect(), scroller.getBoundingClientRect()];
+    // Unless the user has scrolled the field out of view.
+    if (field.top >= visible.top && field.bottom <= visible.top + before) active.scrollIntoView({ block: "nearest" });
   }).observe(scroller);
 }
 
 /**
- * Whether the pointer is pressed on the form: what is computed meanwhile is drawn when it is let go, so that nothing
- * moves between press and release. A select opens at the press, and what ends it is not always told.
- * @param {HTMLElement} root @param {() => void} draw
+ * Delays drawing while the pointer is pressed on the form, so that nothing moves between press and release. A select opens at
+ * the press, and browsers do not always report its end, so it does not count.
+ * @param {HTMLElement} root @param {() => void} draw  Called after the release.
  */
 export function createPointerHold(root, draw) {
-  let holds = false;
-  /** Who waits for the release. @type {(() => void)[]} */
+  let isPressed = false;
+  /** Callbacks that wait for the release. @type {(() => void)[]} */
   const waiting = [];
   root.addEventListener("pointerdown", ({ target }) => {
-    holds = !(/** @type {Element} */ (target).closest("select"));
+    isPressed = !(/** @type {Element} */ (target).closest("select"));
   });
-  // A click comes after its release.
-  const free = () =>
+  // Only after the click event, which follows the release.
+  const release = () =>
     setTimeout(() => {
-      if (!holds) return;
-      holds = false;
+      if (!isPressed) return;
+      isPressed = false;
       draw();
-      for (const go of waiting.splice(0)) go();
+      for (const resolve of waiting.splice(0)) resolve();
     });
-  for (const event of ["pointerup", "pointercancel", "keydown", "blur"]) window.addEventListener(event, free);
+  for (const event of ["pointerup", "pointercancel", "keydown", "blur"]) window.addEventListener(event, release);
   const released = async () => {
-    if (holds) await new Promise((/** @type {(value?: any) => void} */ go) => waiting.push(go));
+    if (isPressed) await new Promise((/** @type {(value?: any) => void} */ resolve) => waiting.push(resolve));
   };
-  return { holds: () => holds, released };
+  return { isPressed: () => isPressed, released };
 }

@@ -1,6 +1,6 @@
 /** Reads and prints points of a curve: one pair per line, separated by comma, semicolon, tab or spaces. */
 
-import { mostOf } from "./schema.js";
+import { maxLengthOf } from "./schema.js";
 
 /** @typedef {[number, number]} Point */
 
@@ -13,43 +13,44 @@ export function printPoints(points) {
 export function readPoints(text) {
   const lines = text.replace(/^\ufeff/, "").split(/\r\n|\r|\n/);
   const first = lines.find((line) => line.trim() !== "") ?? "";
-  const mark = [";", "\t", ","].find((mark) => first.includes(mark)) ?? /\s+/;
+  const separator = [";", "\t", ","].find((each) => first.includes(each)) ?? /\s+/;
   const rows = lines
     .map((line) => line.trim())
-    .map((line) => (line === "" ? [] : line.split(mark).map((cell) => bare(cell, mark))));
-  const most = mostOf("Points", "points");
+    .map((line) => (line === "" ? [] : line.split(separator).map((cell) => normalized(cell, separator))));
+  const maxPoints = maxLengthOf("Points", "points");
   /** @type {Point[]} */
   const value = [];
   let [time, position] = [0, 1];
-  let names = true;
+  let isFirstRow = true;
   for (const [index, cells] of rows.entries()) {
     if (cells.length === 0) continue;
-    const head = names && cells.every((cell) => numberIn(cell) === null);
-    names = false;
-    if (head) {
-      const named = ["time_s", "position"].map((name) => cells.findIndex((cell) => cell.toLowerCase() === name));
-      if (named.every((place) => place >= 0)) [time, position] = named;
+    const isHeader = isFirstRow && cells.every((cell) => numberIn(cell) === null);
+    isFirstRow = false;
+    if (isHeader) {
+      const columns = ["time_s", "position"].map((name) => cells.findIndex((cell) => cell.toLowerCase() === name));
+      if (columns.every((column) => column >= 0)) [time, position] = columns;
       continue;
     }
     const point = [numberIn(cells[time] ?? ""), numberIn(cells[position] ?? "")];
     if (point[0] === null || point[1] === null)
       return {
-        message: `Line ${index + 1}: “${lines[index].trim().slice(0, 40)}” is not a point; give time in s and position, such as 0.25, 12.5.`,
+        message: `Line ${index + 1}: “${lines[index].trim().slice(0, 40)}” is not a point; use time in s and position, such as 0.25, 12.5.`,
       };
     value.push([point[0], point[1]]);
-    if (value.length > most) return { message: `Line ${index + 1}: more than ${most} points; give at most ${most}.` };
+    if (value.length > maxPoints)
+      return { message: `Line ${index + 1}: more than ${maxPoints} points; use at most ${maxPoints}.` };
   }
   return { value };
 }
 
-/** A cell without quotes; beside semicolons and tabs a number may have a decimal comma. @param {string} cell @param {string | RegExp} mark */
-function bare(cell, mark) {
+/** A cell without quotes and with a decimal point. Unless commas separate the cells, a number may have a decimal comma. @param {string} cell @param {string | RegExp} separator */
+function normalized(cell, separator) {
   const text = cell
     .trim()
     .replace(/^"(.*)"$/, "$1")
     .trim()
     .replace("−", "-");
-  return mark === "," ? text : text.replace(",", ".");
+  return separator === "," ? text : text.replace(",", ".");
 }
 
 /** @param {string} text @returns {number | null} */

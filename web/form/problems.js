@@ -1,56 +1,56 @@
 /** Shows the problems of the scenario next to their fields and in a list. */
-import { button, byId, element, fill, say } from "../dom.js";
+import { button, byId, element, fill, setText } from "../dom.js";
 import { counted } from "../state/number.js";
-import { placed, problemsOf } from "./problem_places.js";
+import { assignProblems, problemsOf, problemText } from "./problem_places.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./control.js").Control} Control */
 
-/** Places that are listed one by one. */
+/** Maximum listed problems. */
 const MAX_LISTED = 3;
 
 /** @param {State} state @param {Map<string, Control>} controls @param {Map<string, HTMLElement>} groups */
 export function showProblems(state, controls, groups) {
   const problems = problemsOf(state);
-  const places = placed(problems, controls, groups);
-  for (const [path, control] of controls) control.fail(places.fields.get(path) ?? "");
-  for (const [path, node] of groups) say(node, places.parts.get(path) ?? "");
+  const assigned = assignProblems(problems, controls, groups);
+  for (const [path, control] of controls) control.fail(assigned.fields.get(path) ?? "");
+  for (const [path, node] of groups) setText(node, assigned.parts.get(path) ?? "");
   markSections();
   const list = byId("problems");
   list.hidden = problems.length === 0;
-  say(
+  setText(
     /** @type {Element} */ (list.querySelector("h2")),
     problems.length === 0 ? "" : state.result ? "Not run: showing the last valid result." : "Not run.",
   );
-  const fields = [...places.fields].map(([path, message]) => {
+  const fields = [...assigned.fields].map(([path, message]) => {
     const control = /** @type {Control} */ (controls.get(path));
     const text = `${nameOf(control)}: ${message}`;
     return button(text, text, () => control.focus());
   });
-  const parts = [...places.parts].map(([path, message]) => button(message, message, () => show(groups.get(path))));
+  const parts = [...assigned.parts].map(([path, message]) => button(message, message, () => show(groups.get(path))));
   const buttons = [...fields, ...parts];
   const more = buttons.length - MAX_LISTED;
   const items = [
     ...buttons.slice(0, MAX_LISTED),
     ...(more > 0 ? [`and ${counted(more, "more problem")}`] : []),
-    ...places.others.map(({ path, message }) => (path ? `${path}: ${message}` : message)),
+    ...assigned.others.map(problemText),
   ].map((item) => element("li", {}, item));
   fill(/** @type {Element} */ (list.querySelector("ul")), ...items);
 }
 
-/** Shows a part of the form, also where it is folded. @param {HTMLElement | undefined} part */
+/** Scrolls to a part of the form and unfolds it. @param {HTMLElement | undefined} part */
 function show(part) {
   for (let at = part?.parentElement; at; at = at.parentElement) if (at instanceof HTMLDetailsElement) at.open = true;
   part?.scrollIntoView({ block: "center" });
 }
 
-/** A field with the part of the form that it is in. @param {Control} control */
+/** The label of a field with the part of the form that contains it. @param {Control} control */
 function nameOf({ label, root }) {
   const part = root.closest(".item")?.querySelector("legend")?.textContent;
   return part ? `${label}, ${part}` : label;
 }
 
-/** Marks sections with an error, so that it is seen while they are folded. */
+/** Marks sections that contain an error, also while they are folded. */
 function markSections() {
   for (const part of document.querySelectorAll("details.part")) {
     const summary = /** @type {Element} */ (part.querySelector("summary"));

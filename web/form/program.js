@@ -4,7 +4,7 @@ import { get } from "../state/paths.js";
 import { pointsFirst } from "./fields.js";
 import { choiceBlock } from "./panel_fields.js";
 import { lengthText, withoutGroup, withRaisedGroup } from "./program_groups.js";
-import { fields, fieldsOfKind, labels, mostOf } from "./schema.js";
+import { fields, fieldsOfKind, labels, maxLengthOf } from "./schema.js";
 import { removed } from "./structure.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
@@ -13,36 +13,38 @@ import { removed } from "./structure.js";
 /** Path of all stand-alone controllers. */
 export const STAND_ALONE = "source.standalone";
 
-/** @param {Kit} kit @param {string} at  The controller's path. @param {any[]} groups @param {string} whose  Where there are several. @returns {Node[]} */
-export function programItems(kit, at, groups, whose) {
+/** @param {Kit} kit @param {string} at  Path of the controller. @param {any[]} groups @param {string} suffix  Of names, if there are several controllers. @returns {Node[]} */
+export function programItems(kit, at, groups, suffix) {
   const list = `${at}.groups`;
   return [
     kit.errorOf(list),
-    ...groups.map((_, index) => groupItem(kit, at, groups, index, whose)),
+    ...groups.map((_, index) => groupItem(kit, at, groups, index, suffix)),
     button(
       "Add group",
       `Add group to ${at.slice(STAND_ALONE.length)}`.replace(/\[(\d+)\]/, "controller $1"),
       () => kit.append(list, (last) => structuredClone(last ?? { move: kit.samples.groups.move })),
-      groups.length >= mostOf("StandAlone", "groups"),
+      groups.length >= maxLengthOf("StandAlone", "groups"),
     ),
   ];
 }
 
-/** @param {Kit} kit @param {string} at @param {any[]} groups @param {number} index @param {string} whose */
-function groupItem(kit, at, groups, index, whose) {
+/** @param {Kit} kit @param {string} at @param {any[]} groups @param {number} index @param {string} suffix */
+function groupItem(kit, at, groups, index, suffix) {
   const list = `${at}.groups`;
   const path = `${list}[${index}]`;
   const kind = Object.keys(groups[index])[0];
   const head = element(
     "div",
     { class: "item-head" },
-    kit.kindSelect(`Kind of group ${index + 1}${whose}`, path, kind, labels("ProgramGroup"), (to) =>
+    kit.kindSelect(`Kind of group ${index + 1}${suffix}`, path, kind, labels("ProgramGroup"), (to) =>
       kit.become(path, "ProgramGroup", to, kit.samples.groups[to]),
     ),
-    button("↑", `Group ${index + 1}${whose} earlier`, () => raiseGroup(kit, list, index), index === 0),
-    button("✕", `Remove group ${index + 1}${whose}`, () => removeGroup(kit, list, index), groups.length === 1),
+    button("↑", `Group ${index + 1}${suffix} earlier`, () => raiseGroup(kit, list, index), index === 0),
+    button("✕", `Remove group ${index + 1}${suffix}`, () => removeGroup(kit, list, index), groups.length === 1),
   );
-  const given = fieldsOfKind("ProgramGroup", kind).map((each) => (each.key === "length" ? inUnits(each, at) : each));
+  const groupFields = fieldsOfKind("ProgramGroup", kind).map((each) =>
+    each.key === "length" ? withLengthText(each, at) : each,
+  );
   const own = `${path}.${kind}`;
   const more =
     kind === "move"
@@ -56,7 +58,7 @@ function groupItem(kit, at, groups, index, whose) {
     [
       head,
       ...(kind === "profile" ? more : []),
-      ...choiceBlock(kit, own, given),
+      ...choiceBlock(kit, own, groupFields),
       ...(kind === "move" ? more : []),
     ],
     `ProgramGroup.${kind}`,
@@ -66,7 +68,7 @@ function groupItem(kit, at, groups, index, whose) {
 /** @param {Kit} kit @param {string} path @param {any} move @returns {Node[]} */
 function until(kit, path, move) {
   const at = `${path}.until`;
-  const given = fields("Until").map((each) =>
+  const untilFields = fields("Until").map((each) =>
     each.key === "input"
       ? {
           ...each,
@@ -77,14 +79,14 @@ function until(kit, path, move) {
   return [
     kit.errorOf(at),
     kit.toggle(at, "End early on an input level", Boolean(move.until), kit.samples.until),
-    ...(move.until ? choiceBlock(kit, at, given) : []),
+    ...(move.until ? choiceBlock(kit, at, untilFields) : []),
   ];
 }
 
-/** @param {Kit} kit @param {string} path @param {any} given @returns {Node[]} */
-function profile(kit, path, given) {
+/** @param {Kit} kit @param {string} path @param {any} group @returns {Node[]} */
+function profile(kit, path, group) {
   const at = `${path}.motion`;
-  const kind = given.motion && Object.keys(given.motion)[0];
+  const kind = group.motion && Object.keys(group.motion)[0];
   const { moves } = kit.samples;
   return [
     kit.errorOf(at),
@@ -113,7 +115,7 @@ function raiseGroup(kit, list, index) {
   ]);
 }
 
-/** A length in units and in steps, next to its digits. @param {Field} field @param {string} at @returns {Field} */
-function inUnits(field, at) {
+/** Adds the length in units and steps to the field of its digits. @param {Field} field @param {string} at @returns {Field} */
+function withLengthText(field, at) {
   return { ...field, also: (value, { scenario }) => lengthText(value, get(scenario, at) ?? {}) };
 }

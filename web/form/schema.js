@@ -21,12 +21,12 @@ let schema = { documents: {}, groups: {} };
 let explanations = {};
 
 /** Sets the schema. @param {Schema} described */
-export function takeSchema(described) {
+export function setSchema(described) {
   schema = described;
 }
 
 /** Sets the texts of the help cards. @param {typeof explanations} all */
-export function takeExplanations(all) {
+export function setExplanations(all) {
   explanations = all;
 }
 
@@ -44,19 +44,19 @@ function row(group, name) {
 export const labelOf = (group, name) => row(group, name).label;
 
 /** The maximum length of a list. @param {string} group @param {string} name */
-export const mostOf = (group, name) => row(group, name).most ?? Number.POSITIVE_INFINITY;
+export const maxLengthOf = (group, name) => row(group, name).most ?? Number.POSITIVE_INFINITY;
 
 /** A field of a group for the form. @param {string} group @param {string} name @returns {Field} */
 export function field(group, name) {
-  const { label, type, unit, when, ...given } = row(group, name);
+  const { label, type, unit, when, ...texts } = row(group, name);
   // An optional field can also be empty.
-  const words = [...(isOptional(type) ? [{ name: "", label: given.empty ?? "none" }] : []), ...wordsOf(type)];
+  const words = [...(isOptional(type) ? [{ name: "", label: texts.empty ?? "none" }] : []), ...wordsOf(type)];
   const units = quantity(type);
   return {
     key: name,
     label,
     kind: kindOf(type, unit),
-    hint: hintOf({ unit, ...given }, type === "bool" ? [] : wordsOf(type), labelAt),
+    hint: hintOf({ unit, ...texts }, type === "bool" ? [] : wordsOf(type), labelAt),
     term: `${group}.${name}`,
     ...(unit && !units ? { unit } : {}),
     ...(wordsOf(type).length > 0 ? { choices: Object.fromEntries(words.map(({ name, label }) => [name, label])) } : {}),
@@ -68,9 +68,9 @@ export function field(group, name) {
 
 /** The named fields of a group, or all with a single value. @param {string} group @param {string[]} [names] */
 export function fields(group, names) {
-  const typed = () =>
+  const singleValues = () =>
     schema.groups[group].fields.filter(({ type, unit }) => kindOf(type, unit) !== null).map(({ name }) => name);
-  return (names ?? typed()).map((name) => field(group, name));
+  return (names ?? singleValues()).map((name) => field(group, name));
 }
 
 /** The labels of the kinds of a choice. @param {string} group @returns {{[kind: string]: string}} */
@@ -106,32 +106,32 @@ export function terms() {
 
 /** Defaults of everything that can be added. @returns {Samples} */
 export function samples() {
-  const one = (/** @type {string} */ group) => structuredClone(schema.groups[group]?.default);
-  const each = (/** @type {string} */ group) =>
+  const defaultOf = (/** @type {string} */ group) => structuredClone(schema.groups[group]?.default);
+  const defaultsByKind = (/** @type {string} */ group) =>
     Object.fromEntries(
       (schema.groups[group]?.fields ?? []).map(({ name, type }) => {
         const isList = typeof type === "object" && "list" in type;
-        return [name, isList ? [one(groupIn(type.list) ?? "")] : one(groupIn(type) ?? "")];
+        return [name, isList ? [defaultOf(groupIn(type.list) ?? "")] : defaultOf(groupIn(type) ?? "")];
       }),
     );
   return {
-    moves: each("Move"),
-    mechanics: each("Mechanics"),
-    sources: each("Source"),
-    glitch: one("Glitch"),
-    send: one("ScriptedSend"),
-    controller: one("Controller"),
-    rules: one("TimingRules"),
-    motor: one("Motor"),
-    plant: one("PlantSettings"),
-    protection: one("Protection"),
-    plant_motor: one("PlantMotor"),
-    groups: each("ProgramGroup"),
-    until: one("Until"),
-    homing: one("Homing"),
-    soft_limits: one("SoftLimits"),
-    axis: one("VirtualAxis"),
-    input: one("PanelInput"),
+    moves: defaultsByKind("Move"),
+    mechanics: defaultsByKind("Mechanics"),
+    sources: defaultsByKind("Source"),
+    glitch: defaultOf("Glitch"),
+    send: defaultOf("ScriptedSend"),
+    controller: defaultOf("Controller"),
+    rules: defaultOf("TimingRules"),
+    motor: defaultOf("Motor"),
+    plant: defaultOf("PlantSettings"),
+    protection: defaultOf("Protection"),
+    plant_motor: defaultOf("PlantMotor"),
+    groups: defaultsByKind("ProgramGroup"),
+    until: defaultOf("Until"),
+    homing: defaultOf("Homing"),
+    soft_limits: defaultOf("SoftLimits"),
+    axis: defaultOf("VirtualAxis"),
+    input: defaultOf("PanelInput"),
   };
 }
 
@@ -191,14 +191,27 @@ function labelAt(path) {
   const names = path.split(/[.[\]\d]+(?!_)/).filter(Boolean);
   const name = /** @type {string} */ (names.pop());
   const fields = Object.values(schema.groups).flatMap((group) => group.fields);
-  const parent = groupIn(bare(fields.find((field) => field.name === names.at(-1))?.type ?? "text"));
+  const parent = groupIn(withoutOptional(fields.find((field) => field.name === names.at(-1))?.type ?? "text"));
   const inParent = schema.groups[parent ?? ""]?.fields.find((field) => field.name === name);
   const words = () => fields.flatMap(({ type }) => (type === "bool" ? [] : wordsOf(type)));
   return (inParent ?? fields.find((field) => field.name === name) ?? words().find((word) => word.name === name))?.label;
 }
 
-/** @param {Type} type @returns {Type} */
-function bare(type) {
+/** A path as text: the label of its field, with the numbers of move, axis and controller. @param {string} path */
+export function pathText(path) {
+  const indexOf = (/** @type {string} */ list) =>
+    Number(new RegExp(`\\b${list}\\[(\\d+)\\]`).exec(path)?.[1] ?? Number.NaN);
+  const [move, axis, controller] = ["moves", "axes", "controllers"].map(indexOf);
+  return [
+    labelAt(path) ?? path,
+    ...(move >= 0 ? [`move ${move + 1}`] : []),
+    ...(axis >= 0 ? [`axis ${axis}`] : []),
+    ...(controller >= 0 ? [`controller ${controller + 2}`] : []),
+  ].join(", ");
+}
+
+/** The type of the value of an optional type. @param {Type} type @returns {Type} */
+function withoutOptional(type) {
   return isOptional(type) ? type.optional : type;
 }
 

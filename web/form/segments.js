@@ -1,6 +1,6 @@
 /**
- * Lists of segments as a person types them, one a line: `20 1048576000 -500 right` for 20 steps, the first after
- * so many 1/65536 cycles, each next interval so many longer; `dwell 65536000` for standing still.
+ * Lists of segments as text, one per line. `20 1048576000 -500 right` is count, first interval, change of each interval, and
+ * direction; `dwell 65536000` is a pause. Times are in 1/65536 cycles.
  */
 import { whole } from "../state/json.js";
 
@@ -31,7 +31,7 @@ export function readSegments(text) {
     const segment = readSegment(line);
     if (!segment)
       return {
-        message: `Line ${index + 1}: “${line}” is not a segment; give count, interval, change and direction, such as 20 1048576000 -500 right, or dwell 65536000.`,
+        message: `Line ${index + 1}: “${line}” is not a segment; use count, interval, change and direction, such as 20 1048576000 -500 right, or dwell 65536000.`,
       };
     value.push(segment);
   }
@@ -41,11 +41,11 @@ export function readSegments(text) {
 /** @param {string} line @returns {Segment | null} */
 function readSegment(line) {
   const [, length] = DWELL.exec(line) ?? [];
-  const [, count, interval, add = "0", side = "right"] = STEPS.exec(line) ?? [];
+  const [, count, interval, add = "0", direction = "right"] = STEPS.exec(line) ?? [];
   if (length === undefined && count === undefined) return null;
   const [first, interval_q16, add_q16] = [length ?? count, interval ?? "0", add.replace("−", "-").replace("+", "")].map(
     whole,
   );
   if (length !== undefined) return { dwell: { length_q16: first } };
-  return { steps: { count: first, interval_q16, add_q16, direction: side.toLowerCase() === "right" ? "positive" : "negative" } };
+  return { steps: { count: first, interval_q16, add_q16, direction: direction.toLowerCase() === "right" ? "positive" : "negative" } };
 }

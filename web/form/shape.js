@@ -1,9 +1,9 @@
-/** Which fields an experiment's form has, and when the remedies have to be loaded. */
+/** When the form has to be rebuilt, and when it needs the remedies. */
 import { hasNoLine } from "./source_kinds.js";
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 
-/** Whether something is wrong, or the line is made to go wrong. @param {import("../state/types.js").State} state */
+/** Whether there is a problem, a violation, or a fault on the line. @param {import("../state/types.js").State} state */
 export function needsRemedies({ validation, result, scenario: { line } }) {
   return (
     (validation?.problems.length ?? 0) > 0 ||
@@ -13,12 +13,12 @@ export function needsRemedies({ validation, result, scenario: { line } }) {
   );
 }
 
-/** Whether anything in a group of numbers is other than 0. @param {{[key: string]: number}} group */
+/** Whether any value of a group of numbers is not 0. @param {{[key: string]: number}} group */
 export function isUsed(group) {
   return Object.values(group).some((value) => value !== 0);
 }
 
-/** What decides which fields there are; values do not. @param {Scenario} scenario */
+/** A text that changes whenever the form needs other fields, but not with values. @param {Scenario} scenario */
 export function shapeOf({ source, controllers, driver_timing: driver, line, plant }) {
   const kinds = (/** @type {any[]} */ axes) =>
     axes.map((axis) => [
@@ -42,8 +42,8 @@ export function shapeOf({ source, controllers, driver_timing: driver, line, plan
 
 /** @param {any} panel */
 function panelShape({ groups, home, soft_limits, axis, inputs }) {
-  const of = (/** @type {any} */ group) => [group, group.move?.until, group.profile?.motion].map(kindOf);
-  return [groups?.map(of), Boolean(home), Boolean(soft_limits), Boolean(axis), inputs?.length];
+  const groupShape = (/** @type {any} */ group) => [group, group.move?.until, group.profile?.motion].map(kindOf);
+  return [groups?.map(groupShape), Boolean(home), Boolean(soft_limits), Boolean(axis), inputs?.length];
 }
 
 /** @param {any} part */

@@ -1,13 +1,13 @@
-/** The kinds of sources as data: which use the line, and what each begins with. */
+/** The kinds of sources: which use the line, and the initial content of each. */
 
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 
-/** Whether segments or panels run it: nothing is on the line, and there are no ticks. @param {Scenario} scenario */
+/** Whether the controllers run segments or programs, so nothing is on the line and there are no ticks. @param {Scenario} scenario */
 export function hasNoLine({ source }) {
   return "segments" in source || "standalone" in source || source.motion?.engine === "segments";
 }
 
-/** Faster to the right, a pause, and evenly back: something to see and to change. */
+/** Initial segments: accelerating to the right, a pause, and back at a constant rate. */
 export function sampleSegments() {
   const ms = 16_000 * 65_536;
   return {
@@ -33,18 +33,18 @@ export function hex(byte) {
   return Number(byte).toString(16).padStart(2, "0");
 }
 
-/** Ten steps to the right and ten back on every channel: something to see and to change. @param {any} bus */
+/** Initial ticks: ten steps to the right and ten back on every channel. @param {any} bus */
 function sampleTicks(bus) {
   return ["8a", "0a"].map((tick) => tick.repeat(Number(bus.channels) || 1));
 }
 
-/** Their raw packets. @param {Scenario} scenario @param {any} bus @param {number | null} address */
+/** The raw packets of the initial ticks. @param {Scenario} scenario @param {any} bus @param {number | null} address */
 export function samplePackets({ line }, bus, address) {
   const prefix = line.protocol === "framed" || address === null ? "" : hex(address);
   return sampleTicks(bus).map((tick) => prefix + tick);
 }
 
-/** A script that sends them. @param {Scenario} scenario */
+/** A line script that sends the initial ticks. @param {Scenario} scenario */
 export function sampleSends(scenario) {
   const { bus, line } = scenario;
   const start = bus.self_test_cycles + 1;
@@ -56,7 +56,7 @@ export function sampleSends(scenario) {
       frame: null,
     }));
   }
-  // TICKS with the sequence number 0, the two of them and one without steps, then STATUS.
+  // TICKS with sequence number 0 and three ticks, the last without steps; then STATUS.
   const to = hex(line.address ?? 0);
   const ticks = [...sampleTicks(bus), "00".repeat(Number(bus.channels) || 1)];
   return [`${to}0100${hex(ticks.length)}${ticks.join("")}`, `${to}04`].map((frame, index) => ({

@@ -1,6 +1,9 @@
-/** Sources that are lists of equal rows, in the form: what a host sends, and segments that a controller runs by itself. */
+/** The form of sources that are lists of rows: sends of a line script, and segments. */
 import { fields } from "./schema.js";
 import { sampleSegments } from "./source_kinds.js";
+
+/** Additional bytes of a frame, with room for its reply. */
+const FRAME_BYTES = 30;
 
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {import("./kit.js").Kit} Kit */
@@ -13,7 +16,8 @@ export function sendRows(kit, scenario) {
     scenario.source.line.sends,
     fields("ScriptedSend"),
     "Send",
-    (last) => (last ? { ...last, start_cycle: after(last, kit.now().scenario) } : structuredClone(kit.samples.send)),
+    (last) =>
+      last ? { ...last, start_cycle: cycleAfter(last, kit.now().scenario) } : structuredClone(kit.samples.send),
     "Source.line",
   );
 }
@@ -34,9 +38,9 @@ export function segmentRows(kit, scenario) {
 const segmentFields = () =>
   fields("ChannelSegments").map((each) => (each.kind === "segments" ? { ...each, rows: 5 } : each));
 
-/** A start that lies behind a send: its bytes have passed. @param {any} send @param {Scenario} scenario */
-function after({ start_cycle, bytes, frame }, scenario) {
-  // A frame's check, COBS and end mark, and room for its reply.
-  const length = String(frame ?? bytes).replace(/\s/g, "").length / 2 + (frame === null ? 1 : 30);
+/** A cycle at which the bytes of a send have ended. @param {any} send @param {Scenario} scenario */
+function cycleAfter({ start_cycle, bytes, frame }, scenario) {
+  // A frame also has a CRC, COBS and delimiters, and needs time for its reply.
+  const length = String(frame ?? bytes).replace(/\s/g, "").length / 2 + (frame === null ? 1 : FRAME_BYTES);
   return start_cycle + Math.ceil((10 * length * scenario.clock_hz) / Math.max(1, scenario.line.baud));
 }

@@ -1,5 +1,5 @@
-/** What the host can send: one row per kind, with its part of the form and what it begins with. */
-import { element, say } from "../dom.js";
+/** The kinds of sources, each with its part of the form and its initial content. */
+import { element, setText } from "../dom.js";
 import { axisItems } from "./axes.js";
 import { packetLines } from "./fields.js";
 import { field } from "./schema.js";
@@ -10,11 +10,11 @@ import { samplePackets, sampleSegments, sampleSends } from "./source_kinds.js";
 /** @typedef {import("./kit.js").Samples} Samples */
 /**
  * @typedef {object} SourceKind
- * @property {(kit: Kit) => Promise<void>} [load]  Loads what the page begins without.
- * @property {(scenario: Scenario, samples: Samples) => any} fresh  What stands in the source when it is selected.
+ * @property {(kit: Kit) => Promise<void>} [load]  Loads its form, if that is not part of the first load.
+ * @property {(scenario: Scenario, samples: Samples) => any} fresh  Its initial content.
  * @property {(kit: Kit, scenario: Scenario) => Node[]} form
- * @property {(scenario: Scenario, samples: Samples, controller: any) => {axes?: any[], packets?: string[]}} additional  What an additional controller is given when it is selected.
- * @property {(kit: Kit, index: number) => Node[]} additionalForm  The same in the form of additional controller `index`.
+ * @property {(scenario: Scenario, samples: Samples, controller: any) => {axes?: any[], packets?: string[]}} additional  The initial content of an additional controller.
+ * @property {(kit: Kit, index: number) => Node[]} additionalForm  Its part of the form of additional controller `index`.
  */
 
 /** @type {{[kind: string]: SourceKind}} */
@@ -23,15 +23,15 @@ export const SOURCES = {
     fresh: (_, samples) => structuredClone(samples.sources.motion),
     form: (kit) => [
       kit.row("source.motion.engine", field("Motion", "engine")),
-      ...axisItems(kit, { axes: "source.motion.axes", bus: "bus", whose: "", least: 1 }),
+      ...axisItems(kit, { axes: "source.motion.axes", bus: "bus", suffix: "", minAxes: 1 }),
     ],
     additional: (_, samples) => ({ axes: structuredClone(samples.sources.motion.axes) }),
     additionalForm: (kit, index) =>
       axisItems(kit, {
         axes: `controllers[${index}].axes`,
         bus: `controllers[${index}].bus`,
-        whose: ` of controller ${index + 2}`,
-        least: 0,
+        suffix: ` of controller ${index + 2}`,
+        minAxes: 0,
       }),
   },
   packets: {
@@ -42,13 +42,13 @@ export const SOURCES = {
   },
   line: {
     fresh: (scenario) => ({ sends: sampleSends(scenario) }),
-    form: (kit, scenario) => kit.later((parts) => parts.sendRows(kit, scenario)),
+    form: (kit, scenario) => kit.loadItems((parts) => parts.sendRows(kit, scenario)),
     additional: () => ({}),
     additionalForm: () => [],
   },
   segments: {
     fresh: ({ bus }) => ({ channels: Array.from({ length: Number(bus.channels) || 1 }, sampleSegments) }),
-    form: (kit, scenario) => kit.later((parts) => parts.segmentRows(kit, scenario)),
+    form: (kit, scenario) => kit.loadItems((parts) => parts.segmentRows(kit, scenario)),
     additional: () => ({}),
     additionalForm: () => [],
   },
@@ -60,9 +60,9 @@ export const SOURCES = {
     form: (kit, scenario) => {
       if (standAlone) return standAlone.standAloneItems(kit, scenario);
       const note = element("p", { class: "item-note" }, "Loading fields…");
-      const missing = () =>
-        say(note, "The fields could not be loaded. Check the network, then undo or reload the page.");
-      SOURCES.standalone.load?.(kit).then(kit.anew, missing);
+      const showError = () =>
+        setText(note, "The fields could not be loaded. Check the network, then undo or reload the page.");
+      SOURCES.standalone.load?.(kit).then(kit.rebuild, showError);
       return [note];
     },
     additional: () => ({}),
@@ -73,7 +73,7 @@ export const SOURCES = {
 /** The form of stand-alone controllers, once it is needed. @type {typeof import("./standalone.js") | null} */
 let standAlone = null;
 
-/** The scenario with another kind of source; each controller gets something to do that fits it. @param {Scenario} scenario @param {string} kind @param {Samples} samples */
+/** The scenario with another kind of source and initial content for each controller. @param {Scenario} scenario @param {string} kind @param {Samples} samples */
 export function withSource(scenario, kind, samples) {
   const controllers = scenario.controllers.map((/** @type {any} */ controller) => ({
     ...controller,

@@ -1,6 +1,6 @@
 /**
  * Stand-alone controllers in the form: rates and units, the program as a table of groups, jog, return, homing, limits, axis,
- * memory and inputs. It loads when such a source is first visible.
+ * memory and inputs. Loaded with the first such source.
  */
 import { button, element } from "../dom.js";
 import { MAX_CHANNELS } from "../state/limits.js";
@@ -15,8 +15,16 @@ import { removed } from "./structure.js";
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {import("../state/types.js").Scenario} Scenario */
 
-/** What every user sets; the rest is folded away. */
-const FIRST = ["pulses_per_unit", "decimals", "start_speed_hz", "max_speed_hz", "level_hz_s", "short_move", "loops"];
+/** Fields that every user needs; the others are folded. */
+const BASIC_FIELDS = [
+  "pulses_per_unit",
+  "decimals",
+  "start_speed_hz",
+  "max_speed_hz",
+  "level_hz_s",
+  "short_move",
+  "loops",
+];
 /** Inputs that the form lists; the view Panel has all of them. */
 const MAX_INPUT_ROWS = 40;
 /** @param {Kit} kit @param {Scenario} scenario @returns {Node[]} */
@@ -35,10 +43,10 @@ export function standAloneItems(kit, scenario) {
   ];
 }
 
-/** A controller needs its channel: the bus grows with it. @param {Kit} kit @param {(all: any[]) => any} like */
-function add({ change }, like) {
+/** Adds a controller, and a channel if needed. @param {Kit} kit @param {(all: any[]) => any} templateOf  The controller to copy. */
+function add({ change }, templateOf) {
   change("", (scenario) => {
-    const grown = [...scenario.source.standalone, structuredClone(like(scenario.source.standalone))];
+    const grown = [...scenario.source.standalone, structuredClone(templateOf(scenario.source.standalone))];
     const channels = Math.max(Number(scenario.bus.channels) || 1, grown.length);
     return set(set(scenario, "bus.channels", channels), STAND_ALONE, grown);
   });
@@ -49,11 +57,11 @@ function panelItem(kit, all, index) {
   const at = `${STAND_ALONE}[${index}]`;
   const panel = all[index];
   const name = `stand-alone controller ${index}`;
-  const whose = all.length > 1 ? ` of controller ${index}` : "";
-  const every = withWarnings(at, fields("StandAlone"));
-  const own = every.filter(({ key }) => FIRST.includes(key));
-  const rest = every.filter(({ key }) => !FIRST.includes(key));
-  /** What power, emergency stop and clear are, the first one's inputs say for all. @param {any[]} now */
+  const suffix = all.length > 1 ? ` of controller ${index}` : "";
+  const allFields = withWarnings(at, fields("StandAlone"));
+  const basicFields = allFields.filter(({ key }) => BASIC_FIELDS.includes(key));
+  const otherFields = allFields.filter(({ key }) => !BASIC_FIELDS.includes(key));
+  /** Power, emergency stop and clear are shared inputs of the first controller, so a copy has no inputs. @param {any[]} now */
   const copy = (now) => ({ ...now[index], inputs: [] });
   const head = element(
     "div",
@@ -69,10 +77,10 @@ function panelItem(kit, all, index) {
   const block = (/** @type {string} */ key, /** @type {string} */ group) =>
     choiceBlock(kit, `${at}.${key}`, fields(group));
   const part = (/** @type {string} */ key, /** @type {string} */ group) =>
-    kit.part(labelOf("StandAlone", key) + whose, false, block(key, group));
+    kit.part(labelOf("StandAlone", key) + suffix, false, block(key, group));
   const optional = (/** @type {string} */ key, /** @type {string} */ group, /** @type {any} */ sample) => {
     const label = labelOf("StandAlone", key);
-    return kit.part(label + whose, Boolean(panel[key]), [
+    return kit.part(label + suffix, Boolean(panel[key]), [
       kit.errorOf(`${at}.${key}`),
       kit.toggle(`${at}.${key}`, label, Boolean(panel[key]), sample),
       ...(panel[key] ? block(key, group) : []),
@@ -83,16 +91,16 @@ function panelItem(kit, all, index) {
     at,
     [
       head,
-      ...kit.block(at, own),
-      kit.part(`Self-test, debounce, trust${whose}`, false, kit.block(at, rest)),
-      ...programItems(kit, at, panel.groups ?? [], whose),
+      ...kit.block(at, basicFields),
+      kit.part(`Self-test, debounce, trust${suffix}`, false, kit.block(at, otherFields)),
+      ...programItems(kit, at, panel.groups ?? [], suffix),
       part("jog", "Jog"),
       part("return", "ReturnToZero"),
       optional("home", "Homing", kit.samples.homing),
       optional("soft_limits", "SoftLimits", kit.samples.soft_limits),
       optional("axis", "VirtualAxis", kit.samples.axis),
       part("memory", "Eeprom"),
-      kit.part(`${labelOf("StandAlone", "inputs")}${whose}`, false, inputs(kit, `${at}.inputs`, panel.inputs ?? [])),
+      kit.part(`${labelOf("StandAlone", "inputs")}${suffix}`, false, inputs(kit, `${at}.inputs`, panel.inputs ?? [])),
     ],
     "Source.standalone",
   );
@@ -101,14 +109,14 @@ function panelItem(kit, all, index) {
 /** @param {Kit} kit @param {string} path @param {any[]} list @returns {Node[]} */
 function inputs(kit, path, list) {
   const more = list.length - MAX_INPUT_ROWS;
-  const given = fields("PanelInput").map((each) =>
+  const inputFields = fields("PanelInput").map((each) =>
     each.key === "level" ? { ...each, kind: /** @type {const} */ ("choice"), choices: CHOICES.level } : each,
   );
-  const fresh = (/** @type {any} */ last) =>
+  const createInput = (/** @type {any} */ last) =>
     last
       ? { ...last, cycle: last.cycle + Math.round(kit.now().scenario.clock_hz / 10), level: 1 - last.level }
       : { ...kit.samples.input, input: "start" };
-  const rows = kit.rows(path, list.slice(0, MAX_INPUT_ROWS), given, "Input", fresh, "StandAlone.inputs");
+  const rows = kit.rows(path, list.slice(0, MAX_INPUT_ROWS), inputFields, "Input", createInput, "StandAlone.inputs");
   return [
     kit.errorOf(path),
     element("p", { class: "item-note" }, "Use the view Panel to add and move presses."),

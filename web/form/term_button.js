@@ -1,12 +1,12 @@
-/** A word that explains itself, as the form and the heads of the views have them: the help's card hears its press. */
+/** A button for a term of the form or of a view's header; help/card.js opens its help card. */
 import { element } from "../dom.js";
 
 /** The id of the card. */
 export const CARD = "term-card";
 
 /**
- * The button for a term. In the form it is no stop of the tab key, which would double them: F1 in its field opens it.
- * @param {string} text  What it says.
+ * The button of a term. In the form it is not reachable with Tab, which would double the stops; F1 in the field opens the card.
+ * @param {string} text
  * @param {string} term  Its name in `TERMS`, or of a view in `VIEWS` as `view:motion`.
  * @param {{[name: string]: string}} [attributes]
  */

@@ -1,4 +1,4 @@
-/** What is typed into a field and what it means: texts to values and back, units, and the same value in another light. */
+/** Reads and prints the values of fields, converts their units, and describes them. */
 import { si } from "../state/number.js";
 import { parseNumber, parseQuantity } from "../state/parse_number.js";
 import { get } from "../state/paths.js";
@@ -7,18 +7,18 @@ import { derivedAxis } from "../state/queries.js";
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("./field.js").Field} Field */
 
-/** How lists are typed, once that has loaded; no field of one is made before. @type {import("./lists.js").Lists} */
+/** Formats of lists, loaded before the first field with a list. @type {import("./lists.js").Lists} */
 let lists = {};
 
 /** @param {import("./lists.js").Lists} loaded */
-export function takeLists(loaded) {
+export function setLists(loaded) {
   lists = loaded;
 }
 
-/** What stands next to the field of a list. @param {Field} field */
+/** The buttons next to the field of a list. @param {Field} field */
 export const listTools = ({ kind }) => lists[kind]?.tools;
 
-/** Whether a field holds a list whose way of typing loads with the first of them. @param {Field} field */
+/** Whether a field contains a list. @param {Field} field */
 export function isList({ kind }) {
   return kind === "wholes" || kind === "segments" || kind === "points";
 }
@@ -28,7 +28,7 @@ export function isSame(a, b) {
   return a === b || (typeof a === "object" && JSON.stringify(a) === JSON.stringify(b));
 }
 
-/** A value as it is typed. @param {any} value @param {Field} field */
+/** A value as editable text. @param {any} value @param {Field} field */
 export function print(value, field) {
   if (value === null || value === undefined) return "";
   if (field.kind === "quantity") return String(Object.values(value)[0]);
@@ -50,12 +50,12 @@ function spaced(hex) {
     .replace(/(..)(?=.)/g, "$1 ");
 }
 
-/** The digits alone, however bytes are written: `81 0A`, `0x81 0x0a`. @param {string} text */
-function bare(text) {
+/** The hex digits of bytes such as `81 0A` or `0x81 0x0a`. @param {string} text */
+function hexDigits(text) {
   return text.replace(/\b0x/gi, "").replace(/\s+/g, "").toLowerCase();
 }
 
-/** The value of a text. @param {string} text @param {Field} field @param {State} state @param {any} before  The value before. @returns {{value: any} | {message: string}} */
+/** Reads a text. @param {string} text @param {Field} field @param {State} state @param {any} before  The value before. @returns {{value: any} | {message: string}} */
 export function read(text, field, state, before) {
   const clockHz = Number(state.scenario.clock_hz) || undefined;
   const unit = field.unit ?? "";
@@ -69,14 +69,14 @@ export function read(text, field, state, before) {
     case "text":
       return { value: text };
     case "hex":
-      return { value: bare(text) };
+      return { value: hexDigits(text) };
     case "optional-hex":
-      return { value: bare(text) || null };
+      return { value: hexDigits(text) || null };
     case "lines":
       return {
         value: text
           .split("\n")
-          .map(bare)
+          .map(hexDigits)
           .filter((line) => line !== ""),
       };
     case "optional-number":
@@ -101,16 +101,16 @@ function readQuantity(text, { units = {} }, before) {
   return "message" in parsed ? parsed : { value: { [parsed.unit]: parsed.value } };
 }
 
-/** A quantity in another unit, the same way where the mechanics are known. @param {any} value @param {string} to @param {string} path @param {State} state */
+/** Converts a quantity to another unit. Without known mechanics the number stays. @param {any} value @param {string} to @param {string} path @param {State} state */
 export function convert(value, to, path, state) {
   const from = Object.keys(value)[0];
   const amount = Number(value[from]);
-  const [a, b] = [stepsIn(from, path, state), stepsIn(to, path, state)];
-  if (a === null || b === null || !Number.isFinite(amount)) return { [to]: value[from] };
-  return { [to]: Number(((amount * a) / b).toPrecision(10)) };
+  const [fromSteps, toSteps] = [stepsIn(from, path, state), stepsIn(to, path, state)];
+  if (fromSteps === null || toSteps === null || !Number.isFinite(amount)) return { [to]: value[from] };
+  return { [to]: Number(((amount * fromSteps) / toSteps).toPrecision(10)) };
 }
 
-/** Steps in one of a unit. @param {string} unit @param {string} path @param {State} state @returns {number | null} */
+/** Steps per unit; null if unknown. @param {string} unit @param {string} path @param {State} state @returns {number | null} */
 function stepsIn(unit, path, state) {
   const axis = derivedAxis(state, path);
   if (unit.startsWith("steps")) return 1;
@@ -118,7 +118,7 @@ function stepsIn(unit, path, state) {
   return step ? (unit === "rpm" ? 6 / step : 1 / step) : null;
 }
 
-/** The same number in another light: cycles as a time. @param {any} value @param {Field} field @param {State} state */
+/** Additional meaning of a value, such as cycles as a time. @param {any} value @param {Field} field @param {State} state */
 export function meaning(value, field, state) {
   const also = field.also?.(value, state);
   if (also) return also;

@@ -3,10 +3,10 @@ import { byId, element, fill } from "../dom.js";
 import { CARD, termButton } from "../form/term_button.js";
 import { VIEWS } from "../state/views.js";
 
-/** From the word to its card, and from the card to the window, in CSS pixels. */
+/** Distance of a card from its word and from the edge of the window, in CSS pixels. */
 const GAP_PX = 4;
 
-/** Opens the card of the term that explains an element, if any. @param {Element} at */
+/** Opens the help card of an element. Returns whether it has one. @param {Element} at */
 export function explain(at) {
   const word = /** @type {HTMLElement | null} */ (at.closest(".field, .item")?.querySelector(".term") ?? null);
   if (!word) return false;
@@ -32,7 +32,7 @@ export function createCard() {
     const word = /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest?.(".term"));
     if (word && word !== closing && !(word === opener && card.matches(":popover-open"))) show(word);
     else if (word) card.hidePopover();
-    // Like a label, it moves the focus to its field.
+    // Like a label, the term moves the focus to its field.
     const field = word?.closest(".field")?.querySelector("input, select, textarea");
     if (field instanceof HTMLElement) field.focus({ preventScroll: true });
     closing = null;
@@ -72,13 +72,13 @@ async function show(word) {
   word.setAttribute("aria-expanded", "true");
 }
 
-/** Places the card below its word, or above it if there is more room. @param {HTMLElement} card @param {HTMLElement} word */
+/** Places the card below its word, or above it if there is more page. @param {HTMLElement} card @param {HTMLElement} word */
 function place(card, word) {
   const { left, top, bottom } = word.getBoundingClientRect();
   const { width, height } = card.getBoundingClientRect();
-  const room = document.documentElement;
-  const under = bottom + GAP_PX;
+  const page = document.documentElement;
+  const below = bottom + GAP_PX;
   const above = top - GAP_PX - height;
-  card.style.left = `${Math.max(GAP_PX, Math.min(left, room.clientWidth - width - GAP_PX))}px`;
-  card.style.top = `${Math.max(GAP_PX, under + height <= room.clientHeight || above < GAP_PX ? Math.min(under, room.clientHeight - height - GAP_PX) : above)}px`;
+  card.style.left = `${Math.max(GAP_PX, Math.min(left, page.clientWidth - width - GAP_PX))}px`;
+  card.style.top = `${Math.max(GAP_PX, below + height <= page.clientHeight || above < GAP_PX ? Math.min(below, page.clientHeight - height - GAP_PX) : above)}px`;
 }

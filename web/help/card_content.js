@@ -1,13 +1,13 @@
 /** The content of a help card. */
 import { element, fill } from "../dom.js";
-import { takeExplanations, termOf } from "../form/schema.js";
+import { setExplanations, termOf } from "../form/schema.js";
 import { VIEWS } from "../state/views.js";
 import { meaning } from "./meaning.js";
 
 /** Loads the texts of fields. If that fails, the card shows the hint of the field. */
 async function loadExplanations() {
   const found = await import("./explained.js").catch(() => null);
-  if (found) takeExplanations(found.EXPLAINED);
+  if (found) setExplanations(found.EXPLAINED);
 }
 
 /** Texts of terms without a field. @type {Promise<typeof import("./term_texts.js")> | null} */

@@ -2,7 +2,7 @@
 import { button, byId, element, fill } from "../dom.js";
 import { saveGuided } from "../shell/storage.js";
 
-/** @typedef {{title: string, text: string, at: string, view?: string}} Step  `at` is what it points at, `view` the tab that it is in on a narrow screen. */
+/** @typedef {{title: string, text: string, at: string, view?: string}} Step  `at`: selector of its target; `view`: tab of the target on a narrow screen. */
 
 /** @type {Step[]} */
 export const STEPS = [
@@ -132,13 +132,13 @@ function createGuide({ dispatch, now }) {
     }
     const box = target.getBoundingClientRect();
     const below = box.bottom + GAP_PX;
-    const within = (/** @type {number} */ at, /** @type {number} */ most) =>
-      Math.max(GAP_PX, Math.min(at, most - GAP_PX));
+    const within = (/** @type {number} */ at, /** @type {number} */ max) =>
+      Math.max(GAP_PX, Math.min(at, max - GAP_PX));
     // Left of the views, right of the form, or below the header.
     const left = box.width > clientWidth / 3 ? box.left - width - GAP_PX : box.right + GAP_PX;
-    const isBeside = box.height > height / 2;
-    panel.style.left = `${within(isBeside ? left : box.left, clientWidth - width)}px`;
-    panel.style.top = `${within(isBeside ? box.top : below, clientHeight - height)}px`;
+    const isTall = box.height > height / 2;
+    panel.style.left = `${within(isTall ? left : box.left, clientWidth - width)}px`;
+    panel.style.top = `${within(isTall ? box.top : below, clientHeight - height)}px`;
   }
 
   function end() {

@@ -1,6 +1,6 @@
 /** The dialog of keys (key_list.js), and the F1 key. */
-import { byId, say } from "../dom.js";
-import { listen } from "../shell/commands.js";
+import { byId, setText } from "../dom.js";
+import { registerCommands } from "../shell/commands.js";
 import { explain } from "./card.js";
 
 /** @param {() => Promise<unknown>} load  Loads parts of the page that have keys. */
@@ -10,7 +10,7 @@ export function createKeys(load) {
     try {
       (await import("./key_list.js")).listKeys();
     } catch {
-      say(byId("keys-list"), "The keys could not be loaded. Check the network and open this again.");
+      setText(byId("keys-list"), "The keys could not be loaded. Check the network and open this again.");
     }
   };
   const open = () => {
@@ -25,7 +25,7 @@ export function createKeys(load) {
   dialog.addEventListener("click", (event) => {
     if (event.target === dialog) dialog.close();
   });
-  listen(document, "Help", [
+  registerCommands(document, "Help", [
     {
       keys: ["F1"],
       text: "explain the focused field, or show this help",
@@ -35,7 +35,7 @@ export function createKeys(load) {
       },
     },
   ]);
-  listen(byId("views"), "Any view", [
+  registerCommands(byId("views"), "Any view", [
     {
       keys: ["?"],
       text: "show this help",

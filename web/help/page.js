@@ -1,7 +1,7 @@
 /** Fills the lists of the help page. */
 import { byId, element, fill } from "../dom.js";
 import { compiled } from "../engine/wasm.js";
-import { documents, labels, takeExplanations, takeSchema, termOf, terms } from "../form/schema.js";
+import { documents, labels, setExplanations, setSchema, termOf, terms } from "../form/schema.js";
 import init, { schema } from "../pkg/stepscope_wasm.js";
 import { VIEWS } from "../state/views.js";
 import { EXPLAINED } from "./explained.js";
@@ -11,8 +11,8 @@ import { DERIVED, TERMS } from "./term_texts.js";
 /** @typedef {import("../form/field.js").Term} Term */
 
 await init({ module_or_path: await compiled() });
-takeSchema(schema());
-takeExplanations(EXPLAINED);
+setSchema(schema());
+setExplanations(EXPLAINED);
 
 /** The kinds of a choice with their meaning. @param {string} group */
 const kinds = (group) =>
@@ -30,10 +30,10 @@ fill(
 );
 
 // Several groups share terms, and two terms can have the same name.
-const all = Object.entries(terms()).filter(([id]) => !/^(Move|Mechanics)\./.test(id));
-const ofViews = Object.values(TERMS).flatMap((terms) => Object.values(terms));
-const each = [...all.map(([, term]) => term), ...Object.values(DERIVED), ...ofViews];
-const unique = [...new Map(each.map((term) => [`${term.name}: ${term.text}`, term])).values()];
+const fieldTerms = Object.entries(terms()).filter(([id]) => !/^(Move|Mechanics)\./.test(id));
+const viewTerms = Object.values(TERMS).flatMap((terms) => Object.values(terms));
+const allTerms = [...fieldTerms.map(([, term]) => term), ...Object.values(DERIVED), ...viewTerms];
+const unique = [...new Map(allTerms.map((term) => [`${term.name}: ${term.text}`, term])).values()];
 unique.sort((a, b) => (a.name ?? "").localeCompare(b.name ?? "", "en"));
 fill(byId("terms"), ...unique.flatMap((term) => [element("dt", {}, term.name ?? ""), meaning("dd", term)]));
 

@@ -27,7 +27,7 @@ export const DERIVED = {
   },
   line_load: {
     name: "Line load",
-    text: "Share of time that the line is busy. Above 100 % the packets of a tick take longer than the tick.",
+    text: "Percentage of time that the line is busy. Above 100 % the packets of a tick take longer than the tick.",
     from: "patent",
   },
   on_the_line: {

@@ -5,8 +5,8 @@
 
 /**
  * @typedef {object} Command
- * @property {string[]} keys  Such as `n`, `Shift+ArrowLeft`, `Ctrl+Z`; Ctrl is the command key of a Mac, too.
- * @property {string} text    What it does, as the help says it.
+ * @property {string[]} keys  Such as `n`, `Shift+ArrowLeft`, `Ctrl+Z`; Ctrl includes the command key of a Mac.
+ * @property {string} text    Its effect, for the help.
  * @property {(event: KeyboardEvent) => void | false} run  `false` leaves the key to the browser.
  *
  * @typedef {{title: string, commands: Command[]}} Scope  A part of the page.
@@ -16,12 +16,12 @@
 const scopes = [];
 
 /**
- * Hears a part's keys.
- * @param {HTMLElement | Document} target  Has the focus in it when they count.
- * @param {string} title  What the part is called in the help; parts of one title are listed once.
+ * Registers the keys of a part of the page.
+ * @param {HTMLElement | Document} target  They work while the focus is in it.
+ * @param {string} title  Name of the part in the help; parts with the same name are listed once.
  * @param {Command[]} commands
  */
-export function listen(target, title, commands) {
+export function registerCommands(target, title, commands) {
   if (!scopes.some((scope) => scope.title === title)) scopes.push({ title, commands });
   const byKey = new Map(commands.flatMap((command) => command.keys.map((key) => [key.toLowerCase(), command])));
   target.addEventListener("keydown", (raw) => {
@@ -32,23 +32,23 @@ export function listen(target, title, commands) {
   });
 }
 
-/** All commands so far, by the parts that they belong to. */
+/** All registered commands by part. */
 export function listed() {
   return scopes;
 }
 
-/** A key with its modifiers, as `Command.keys` writes it. Of a sign that needs Shift, Shift is no part. @param {KeyboardEvent} event */
+/** A key with its modifiers in the form of `Command.keys`. A character that needs Shift, such as `?`, has no `Shift+`. @param {KeyboardEvent} event */
 function nameOf({ key, ctrlKey, metaKey, altKey, shiftKey }) {
-  const sign = key.length === 1 && !/[a-z]/i.test(key);
+  const isSymbol = key.length === 1 && !/[a-z]/i.test(key);
   return [
     ctrlKey || metaKey ? "Ctrl+" : "",
     altKey ? "Alt+" : "",
-    shiftKey && !sign ? "Shift+" : "",
+    shiftKey && !isSymbol ? "Shift+" : "",
     key === " " ? "Space" : key,
   ].join("");
 }
 
-/** A key of the row of digits by its place, for on many keyboards Shift makes another sign of it, or only Shift a digit. @param {KeyboardEvent} event */
+/** A digit by the position of its key: on many keyboards Shift and a digit types a symbol, or only Shift types a digit. @param {KeyboardEvent} event */
 function digitOf({ code, ctrlKey, metaKey, altKey, shiftKey }) {
   const [, digit] = /^Digit(\d)$/.exec(code) ?? [];
   return digit && !ctrlKey && !metaKey && !altKey ? `${shiftKey ? "shift+" : ""}${digit}` : "";

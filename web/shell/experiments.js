@@ -1,10 +1,10 @@
 /** The panel of experiments that are saved on this device. */
-import { button, byId, element, fill, say } from "../dom.js";
+import { button, byId, element, fill, setText } from "../dom.js";
 import { Dropped } from "../engine/request_slots.js";
+import { errorMessage } from "../state/error_message.js";
 import { MAX_TITLE } from "../state/history.js";
 import { readJson } from "../state/json.js";
 import { counted, si } from "../state/number.js";
-import { message } from "./link.js";
 import { save } from "./save.js";
 import { loadExperiments, saveExperiments } from "./storage.js";
 
@@ -16,10 +16,10 @@ const FILE_NAME = "stepscope-experiments.json";
 /** Maximum bytes of such a file. */
 const MAX_FILE = 32 << 20;
 
-/** @typedef {{fresh: string, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} Given  `fresh`: a new experiment as JSON. */
+/** @typedef {{newExperiment: string, engine: import("../engine/engine.js").Engine, problemText: import("./open_file.js").ProblemText} & import("../state/types.js").Page} Given  `newExperiment` is JSON. */
 
 /** @param {Given} page @param {{close: () => void, changed: () => void, open: (saved: Scenario) => void}} panel  `changed`: the list has changed. */
-export function createExperiments({ fresh, engine, dispatch, now }, { close, changed, open }) {
+export function createExperiments({ newExperiment, engine, problemText, dispatch, now }, { close, changed, open }) {
   const name = /** @type {HTMLInputElement} */ (byId("experiment-name"));
   const saveButton = /** @type {HTMLButtonElement} */ (byId("experiment-save"));
   const list = byId("experiment-list");
@@ -33,7 +33,7 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
   });
   saveButton.addEventListener("click", saveAs);
   byId("experiment-new").addEventListener("click", () => {
-    dispatch({ type: "replace", scenario: readJson(fresh), origin: "own" });
+    dispatch({ type: "replace", scenario: readJson(newExperiment), origin: "own" });
     close();
   });
   exportAll.addEventListener("click", exportFile);
@@ -42,11 +42,11 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
     const [file] = chooser.files ?? [];
     chooser.value = "";
     if (!file) return;
-    say(
+    setText(
       about,
       file.size > MAX_FILE
-        ? `${file.name} has ${si(file.size, "B", 3)}; at most ${si(MAX_FILE, "B", 3)} are allowed.`
-        : await importExperiments(await file.text(), engine),
+        ? `${file.name} has ${si(file.size, "B", 3)}; use at most ${si(MAX_FILE, "B", 3)}.`
+        : await importExperiments(await file.text(), engine, problemText),
     );
     show();
   });
@@ -54,14 +54,14 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
   function saveAs() {
     const title = name.value.trim();
     if (title === "") {
-      say(about, "The name is missing; enter one.");
+      setText(about, "The name is missing; enter one.");
       return name.focus();
     }
     const scenario = { ...now().scenario, title };
     if (now().scenario.title !== title) dispatch({ type: "edit", path: "title", value: title });
     if (!saveExperiments([...loadExperiments().filter((each) => each.title !== title), scenario]))
-      return say(about, "The browser cannot save here (private window or no space left). Export it as a file.");
-    say(about, `Saved on this device as “${title}”.`);
+      return setText(about, "The browser cannot save here (private window or no space left). Export it as a file.");
+    setText(about, `Saved on this device as “${title}”.`);
     return show();
   }
 
@@ -71,7 +71,7 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
     saveExperiments(loadExperiments().filter((each) => each.title !== title));
     const back = button("Restore", `Restore ${title}`, () => {
       saveExperiments([...loadExperiments().filter((each) => each.title !== title), removed]);
-      say(about, `“${title}” is restored.`);
+      setText(about, `“${title}” is restored.`);
       show();
       name.focus();
     });
@@ -82,13 +82,13 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
 
   function exportFile() {
     save(FILE_NAME, "application/json", [JSON.stringify({ [FILE]: 1, experiments: loadExperiments() }, null, 1)]);
-    say(about, `Saved ${FILE_NAME}.`);
+    setText(about, `Saved ${FILE_NAME}.`);
   }
 
   function show() {
     const saved = loadExperiments();
     const title = name.value.trim();
-    say(saveButton, saved.some((each) => each.title === title) ? "Replace" : "Save");
+    setText(saveButton, saved.some((each) => each.title === title) ? "Replace" : "Save");
     exportAll.disabled = saved.length === 0;
     fill(
       list,
@@ -109,42 +109,42 @@ export function createExperiments({ fresh, engine, dispatch, now }, { close, cha
 
   function onOpen() {
     name.value = String(now().scenario.title ?? "");
-    say(about, "");
+    setText(about, "");
     show();
   }
 
   return { onOpen };
 }
 
-/** Adds the experiments of a file to the saved ones; duplicate names get a number. @param {string} text @param {import("../engine/engine.js").Engine} engine @returns {Promise<string>}  The result as text. */
-async function importExperiments(text, engine) {
+/** Adds the experiments of a file to the saved ones; duplicate names get a number. @param {string} text @param {import("../engine/engine.js").Engine} engine @param {Given["problemText"]} problemText @returns {Promise<string>}  The result as text. */
+async function importExperiments(text, engine, problemText) {
   try {
     const file = readJson(text);
     if (!Array.isArray(file?.experiments) || !(FILE in file))
       return "This is not a file of experiments; choose one from “Export all”. Use “Open…” for a single experiment.";
     const saved = loadExperiments();
-    const refused = [];
+    const invalid = [];
     for (const each of file.experiments) {
       const { problems, scenario } = await engine.request("check", JSON.stringify(each));
       const read = readJson(scenario);
-      if (problems.length > 0) refused.push(`“${read.title}” (${problems[0].path}: ${problems[0].message})`);
+      if (problems.length > 0) invalid.push(`“${read.title}” (${problemText(problems[0])})`);
       else if (!saved.some((known) => JSON.stringify(known) === JSON.stringify(read)))
         saved.push({ ...read, title: freeName(read.title || "experiment", saved) });
     }
     if (!saveExperiments(saved)) return "The browser cannot save here (private window or no space left).";
-    const not = refused.length > 0 ? ` Not imported: ${refused.join("; ")}.` : "";
-    return `${counted(file.experiments.length - refused.length, "experiment")} imported.${not}`;
+    const not = invalid.length > 0 ? ` Not imported: ${invalid.join("; ")}.` : "";
+    return `${counted(file.experiments.length - invalid.length, "experiment")} imported.${not}`;
   } catch (error) {
     if (error instanceof Dropped) return "The engine was restarted; import the file again.";
-    return `This file cannot be read: ${message(error)}`;
+    return `This file cannot be read: ${errorMessage(error)}`;
   }
 }
 
 /** @param {string} title @param {Scenario[]} saved */
 function freeName(title, saved) {
-  const taken = (/** @type {string} */ name) => saved.some((each) => each.title === name);
+  const isUsed = (/** @type {string} */ name) => saved.some((each) => each.title === name);
   let name = title;
-  for (let number = 2; taken(name); number++) {
+  for (let number = 2; isUsed(name); number++) {
     const tail = ` (${number})`;
     name = [...title].slice(0, MAX_TITLE - tail.length).join("") + tail;
   }

@@ -13,7 +13,7 @@ import { harmonicsTable, marginsTable, violationsTable } from "./tables.js";
 /** Pieces of a file that become one blob, which the browser may keep on disk. */
 const PIECES = 16;
 
-/** The parts of the run that can be saved: all of it, and what is between the cursors. @param {State} state @param {Span | null} span @returns {[string, string][]} */
+/** The time ranges that can be saved: the whole run, and between the cursors. @param {State} state @param {Span | null} span @returns {[string, string][]} */
 export function partsOf({ result }, span) {
   const { clock_hz = 1, end_s } = result?.summary ?? {};
   /** @type {[string, string][]} */
@@ -28,7 +28,7 @@ export function statusOf(state) {
   return isStale(state) ? "The views show an earlier experiment than the form. Files contain what the views show." : "";
 }
 
-/** @param {State} state @param {Engine} engine @param {Span | null} span  Cycles, both in it; null is the whole run. @returns {Group[]} */
+/** @param {State} state @param {Engine} engine @param {Span | null} span  First and last cycle; null is the whole run. @returns {Group[]} */
 export function exportOffers(state, engine, span) {
   const { result, scenario } = state;
   const controller = selected(state);
@@ -38,7 +38,7 @@ export function exportOffers(state, engine, span) {
   const hasSegments = Boolean(source?.segments) || source?.motion?.engine === "segments";
   const isPanel = Boolean(source?.standalone);
   const { file, table } = makers(state, engine, span);
-  // A panel has neither ticks nor segments, and sends nothing.
+  // A stand-alone controller has neither ticks nor segments, and sends nothing.
   const steps = hasSegments
     ? file("segments", "-segments.csv", "text/csv", "Segment lists")
     : file("ticks", "-ticks.csv", "text/csv", "Ticks, steps per channel");
@@ -83,7 +83,7 @@ function settingsOffers(state) {
   return [{ name, type: "application/json", label: "Scenario, JSON", make }];
 }
 
-/** How offers of the shown controller's files and tables are made. @param {State} state @param {Engine} engine @param {Span | null} span */
+/** Functions that create offers of files and tables of the visible controller. @param {State} state @param {Engine} engine @param {Span | null} span */
 function makers(state, engine, span) {
   const { controller, summary } = /** @type {import("../state/types.js").Result} */ (state.result);
   const { controllers, end_cycle, clock_hz } = summary;
@@ -97,7 +97,7 @@ function makers(state, engine, span) {
       name: `${base}${cut}${suffix}`,
       type,
       label,
-      make: (pace) => pieces(engine, [kind, controller, start, end], pace),
+      make: (report) => pieces(engine, [kind, controller, start, end], report),
     }),
     /** @param {string} suffix @param {string} label @param {string} method @param {(reply: any, clockHz: number) => string} text @returns {Offer} */
     table: (suffix, label, method, text) => ({
@@ -109,8 +109,8 @@ function makers(state, engine, span) {
   };
 }
 
-/** A file that the worker makes, in blobs. @param {Engine} engine @param {any[]} file  Kind, controller, first and last cycle. @param {(part: number) => void} pace */
-async function pieces(engine, file, pace) {
+/** A file of the worker as blobs. @param {Engine} engine @param {any[]} file  Kind, controller, first and last cycle. @param {(progress: number) => void} report */
+async function pieces(engine, file, report) {
   /** @type {Blob[]} */
   const blobs = [];
   /** @type {BlobPart[]} */
@@ -126,7 +126,7 @@ async function pieces(engine, file, pace) {
       gathered = [];
     }
     from = piece.next;
-    pace((from ?? piece.rows) / Math.max(1, piece.rows));
+    report((from ?? piece.rows) / Math.max(1, piece.rows));
   }
   return blobs;
 }

@@ -1,9 +1,9 @@
 /** The export panel. The worker writes long files in pieces. */
-import { byId, element, fill, options, say } from "../dom.js";
+import { byId, element, fill, setOptions, setText } from "../dom.js";
 import { Dropped } from "../engine/request_slots.js";
+import { errorMessage } from "../state/error_message.js";
 import { si } from "../state/number.js";
 import { exportOffers, partsOf, sizeOf, statusOf } from "./export_offers.js";
-import { message } from "./link.js";
 import { between } from "./offers.js";
 import { save } from "./save.js";
 
@@ -11,9 +11,9 @@ import { save } from "./save.js";
 /** @typedef {import("../engine/engine.js").Engine} Engine */
 /** @typedef {import("./offers.js").Offer} Offer */
 
-class Cancelled extends Error {}
+class Canceled extends Error {}
 
-/** @param {{engine: Engine} & import("../state/types.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  What other parts of the page offer, each list with its title. @param {import("./lazy_popover.js").Popover} popover @returns {import("./lazy_popover.js").Content} */
+/** @param {{engine: Engine} & import("../state/types.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  Files of other parts of the page, with their titles. @param {import("./lazy_popover.js").Popover} popover @returns {import("./lazy_popover.js").Content} */
 export function createExports({ engine, now }, others, { isOpen }) {
   const part = /** @type {HTMLSelectElement} */ (byId("export-stretch"));
   const list = byId("export-list");
@@ -30,8 +30,8 @@ export function createExports({ engine, now }, others, { isOpen }) {
   function offer() {
     const state = now();
     const span = between(state);
-    options(part, partsOf(state, span), span ? part.value || "whole" : "whole");
-    if (!busy) say(status, statusOf(state));
+    setOptions(part, partsOf(state, span), span ? part.value || "whole" : "whole");
+    if (!busy) setText(status, statusOf(state));
     const groups = [
       ...exportOffers(state, engine, part.value === "cursors" ? span : null),
       ...others.map(([title, offered]) => ({ title, offers: offered(state, engine) })),
@@ -53,9 +53,9 @@ export function createExports({ engine, now }, others, { isOpen }) {
     );
   }
 
-  /** @param {Offer} offered */
+  /** @param {Offer} file */
   async function run({ name, type, make }) {
-    const begun = now().result?.summary;
+    const summary = now().result?.summary;
     const show = (/** @type {boolean} */ on) => {
       busy = on;
       bar.hidden = cancel.hidden = !on;
@@ -63,29 +63,29 @@ export function createExports({ engine, now }, others, { isOpen }) {
     };
     stopped = false;
     bar.value = 0;
-    say(status, `Writing ${name}…`);
+    setText(status, `Writing ${name}…`);
     show(true);
     try {
-      const parts = await make((done) => {
-        if (stopped) throw new Cancelled();
-        if (now().result?.summary !== begun) throw new Error("the experiment has run again; export again");
-        bar.value = done;
+      const parts = await make((progress) => {
+        if (stopped) throw new Canceled();
+        if (now().result?.summary !== summary) throw new Error("the experiment has run again; export again");
+        bar.value = progress;
       });
       save(name, type, parts);
-      say(status, `Saved ${name}, ${si(sizeOf(parts), "B", 3)}.`);
+      setText(status, `Saved ${name}, ${si(sizeOf(parts), "B", 3)}.`);
     } catch (error) {
-      const why = error instanceof Dropped ? "the engine was restarted; export again" : message(error);
-      say(status, error instanceof Cancelled ? "Canceled: nothing was saved." : `${name} was not saved: ${why}`);
+      const why = error instanceof Dropped ? "the engine was restarted; export again" : errorMessage(error);
+      setText(status, error instanceof Canceled ? "Canceled: nothing was saved." : `${name} was not saved: ${why}`);
     }
     show(false);
-    offerAgain();
+    refresh();
   }
 
-  /** Keeps the last word on a file while the list is made anew. */
-  function offerAgain() {
+  /** Updates the list, but keeps the message about the last file. */
+  function refresh() {
     const text = status.textContent ?? "";
     if (isOpen()) offer();
-    say(status, text);
+    setText(status, text);
   }
 
   /** @param {State} state @param {State | undefined} before */

@@ -1,9 +1,11 @@
 /** The header: presets, undo and redo, the state of the run, and the messages below it. */
-import { byId, element, fill, options, say } from "../dom.js";
+
+import { byId, element, fill, setOptions, setText } from "../dom.js";
+import { errorMessage } from "../state/error_message.js";
 import { readJson } from "../state/json.js";
 import { si } from "../state/number.js";
 import { blockedBy, isStale, selected } from "../state/queries.js";
-import { listen } from "./commands.js";
+import { registerCommands } from "./commands.js";
 import { createHealth } from "./health.js";
 import { statusText } from "./run_texts.js";
 
@@ -17,9 +19,9 @@ const RECORDED = [
 ];
 
 /** Progress is shown only for runs longer than this, in ms. */
-const PATIENCE_MS = 90;
+const PROGRESS_DELAY_MS = 90;
 
-/** @param {{presets: Preset[], cancel: () => void, retry: () => void, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
+/** @param {{presets: Preset[], cancel: () => void, retry: () => void, engine: import("../engine/engine.js").Engine, problemText: import("./open_file.js").ProblemText} & import("../state/types.js").Page} page */
 export function createHeader({ presets, cancel, retry, ...page }) {
   const { dispatch } = page;
   const health = createHealth(page);
@@ -28,7 +30,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
   const undo = /** @type {HTMLButtonElement} */ (byId("undo"));
   const redo = /** @type {HTMLButtonElement} */ (byId("redo"));
   const progress = /** @type {HTMLProgressElement} */ (byId("progress"));
-  let since = 0;
+  let phaseStart = 0;
 
   const recorded = RECORDED.map(([id, title]) => element("option", { value: id }, title));
   const recordings = element("optgroup", { label: "Recordings" }, ...recorded);
@@ -45,12 +47,12 @@ export function createHeader({ presets, cancel, retry, ...page }) {
   byId("run-anyway").addEventListener("click", () => dispatch({ type: "approve" }));
   byId("cancel").addEventListener("click", cancel);
   byId("try-again").addEventListener("click", retry);
-  listen(document, "Everywhere", [
-    { keys: ["Ctrl+z"], text: "undo", run: (event) => (isElsewhere(event) ? false : dispatch({ type: "undo" })) },
+  registerCommands(document, "Everywhere", [
+    { keys: ["Ctrl+z"], text: "undo", run: (event) => (isOutsideForm(event) ? false : dispatch({ type: "undo" })) },
     {
       keys: ["Ctrl+Shift+z", "Ctrl+y"],
       text: "redo",
-      run: (event) => (isElsewhere(event) ? false : dispatch({ type: "redo" })),
+      run: (event) => (isOutsideForm(event) ? false : dispatch({ type: "redo" })),
     },
   ]);
 
@@ -76,8 +78,8 @@ export function createHeader({ presets, cancel, retry, ...page }) {
 
   /** @param {string} what @param {unknown} error */
   function refuse(what, error) {
-    const text = `${what} cannot be opened: ${error instanceof Error ? error.message : error}`;
-    dispatch({ type: "notice", notice: { kind: "error", text, place: null } });
+    const text = `${what} cannot be opened: ${errorMessage(error)}`;
+    dispatch({ type: "notice", notice: { kind: "error", text, location: null } });
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -86,16 +88,16 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     redo.disabled = state.future.length === 0;
     const id = state.origin.startsWith("preset:") ? state.origin.slice("preset:".length) : "";
     if (before?.origin !== state.origin) preset.value = id;
-    if (before?.run.phase !== state.run.phase) since = performance.now();
+    if (before?.run.phase !== state.run.phase) phaseStart = performance.now();
     const running = state.run.phase === "running";
-    const long = running && state.run.progress !== null && performance.now() - since > PATIENCE_MS;
+    const long = running && state.run.progress !== null && performance.now() - phaseStart > PROGRESS_DELAY_MS;
     progress.hidden = !long;
     byId("cancel").hidden = !long;
     if (state.run.progress) progress.value = state.run.progress.cycle / Math.max(1, state.run.progress.end_cycle);
     const text = statusText(state, long);
-    say(byId("status"), text);
+    setText(byId("status"), text);
     if (byId("status").title !== text) byId("status").title = text;
-    say(
+    setText(
       byId("computed"),
       state.result && !state.result.summary.recorded && !long && blockedBy(state) !== "problems"
         ? `computed in ${si(state.result.ms / 1000, "s", 2)}`
@@ -104,7 +106,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     byId("on-show").hidden = !state.result?.summary.recorded;
     health.render(state);
     chooser(state);
-    say(byId("digest"), selected(state)?.digest ?? "–");
+    setText(byId("digest"), selected(state)?.digest ?? "–");
     byId("digest").classList.toggle("stale", isStale(state));
     messages(state);
     document.title = state.scenario.title ? `${state.scenario.title} – Stepscope` : "Stepscope";
@@ -113,7 +115,7 @@ export function createHeader({ presets, cancel, retry, ...page }) {
   /** The controllers on the line, if there are several. @param {State} state */
   function chooser({ result }) {
     const controllers = result?.summary.controllers ?? [];
-    options(
+    setOptions(
       controller,
       controllers.map(({ address }, index) => [String(index), `${index + 1}, address ${address ?? "none"}`]),
       String(result?.controller ?? 0),
@@ -124,8 +126,8 @@ export function createHeader({ presets, cancel, retry, ...page }) {
   return { render };
 }
 
-/** Whether a key is typed into a text outside of the form. @param {KeyboardEvent} event */
-function isElsewhere({ target }) {
+/** Whether a key is typed into a text field outside of the form. @param {KeyboardEvent} event */
+function isOutsideForm({ target }) {
   return target instanceof Element && target.matches("input, textarea") && !target.closest("#form");
 }
 
@@ -134,13 +136,13 @@ function messages(state) {
   const over = blockedBy(state) === "budget";
   const budget = byId("budget");
   budget.hidden = !over;
-  say(
+  setText(
     /** @type {Element} */ (budget.firstElementChild),
     over ? `Not run yet: ${state.validation?.cost?.message ?? "this run takes long."}` : "",
   );
   const failed = byId("engine-message");
   failed.hidden = state.run.phase !== "failed";
-  say(/** @type {Element} */ (failed.firstElementChild), state.run.message);
+  setText(/** @type {Element} */ (failed.firstElementChild), state.run.message);
 }
 
 /** Presets by paper. @param {Preset[]} presets */

@@ -7,10 +7,10 @@ import { hostText } from "./run_texts.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Summary} Summary */
-/** @typedef {{name: string, times: number, cycle: number, row: number | null}} FaultPlace  Where a fault was raised first. */
+/** @typedef {{name: string, times: number, cycle: number, row: number | null}} FirstFault  The first cycle and packet row of a fault. */
 /** @typedef {{text: string, bad?: boolean, press?: () => void}} Piece */
 
-/** Shown around a fault, in s. */
+/** Time that is shown before and after a fault, in s. */
 const AROUND_S = 0.001;
 
 /** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
@@ -18,19 +18,19 @@ export function createHealth({ engine, dispatch, now }) {
   const line = byId("health");
 
   /** Shows where a fault was raised first. @param {string} name */
-  async function lead(name) {
-    /** @type {FaultPlace[] | null} */
-    const places = await engine.request("fault_places").catch(unlessDropped);
-    const place = places?.find((each) => each.name === name);
-    if (!place) return;
-    open(place.row === null ? "pulses" : "packets");
+  async function showFault(name) {
+    /** @type {FirstFault[] | null} */
+    const faults = await engine.request("fault_places").catch(unlessDropped);
+    const fault = faults?.find((each) => each.name === name);
+    if (!fault) return;
+    open(fault.row === null ? "pulses" : "packets");
     const around = AROUND_S * (now().result?.summary.clock_hz ?? 1);
-    dispatch({ type: "window", window: { start: place.cycle - around, end: place.cycle + around } });
-    dispatch({ type: "cursor", which: "a", cycle: place.cycle });
-    if (place.row !== null) dispatch({ type: "packet", packet: place.row });
+    dispatch({ type: "window", window: { start: fault.cycle - around, end: fault.cycle + around } });
+    dispatch({ type: "cursor", which: "a", cycle: fault.cycle });
+    if (fault.row !== null) dispatch({ type: "packet", packet: fault.row });
   }
 
-  /** Brings a view into sight: on a narrow screen its tab, on a wide one its place. @param {string} view */
+  /** Shows a view: opens its tab on a narrow screen, or scrolls to it on a wide one. @param {string} view */
   function open(view) {
     if (now().panes.largest) dispatch({ type: "pane", panes: { largest: null } });
     dispatch({ type: "view", view });
@@ -46,25 +46,25 @@ export function createHealth({ engine, dispatch, now }) {
   function pieces(state) {
     const controller = selected(state);
     if (!state.result || !controller) return [];
-    const { faults, violations: broken } = controller;
+    const { faults, violations: violationCount } = controller;
     const { host } = state.result.summary;
     const lost = host?.jobs.some(({ progress }) => progress !== "done");
     /** @type {Piece[][]} */
     const groups = [host ? [{ text: hostText(state.result.summary), bad: lost }] : []];
-    // A framed line mends what noise does to it.
+    // On a framed line faults are repaired by repeated frames.
     const bad = !host || lost;
     groups.push(
-      faults.names.flatMap((name, place) => [
-        { text: place === 0 ? "faults: " : ", ", bad },
-        { text: name, bad, press: () => lead(name) },
+      faults.names.flatMap((name, index) => [
+        { text: index === 0 ? "faults: " : ", ", bad },
+        { text: name, bad, press: () => showFault(name) },
       ]),
     );
-    const counted = `${count(broken ?? 0)} timing ${broken === 1 ? "violation" : "violations"}`;
-    if (broken === 0) groups.push([{ text: "driver timing OK" }]);
-    else if (broken !== null) groups.push([{ text: counted, bad: true, press: violations }]);
+    const counted = `${count(violationCount ?? 0)} timing ${violationCount === 1 ? "violation" : "violations"}`;
+    if (violationCount === 0) groups.push([{ text: "driver timing OK" }]);
+    else if (violationCount !== null) groups.push([{ text: counted, bad: true, press: violations }]);
     return groups
       .filter((group) => group.length > 0)
-      .flatMap((group, place) => (place === 0 ? group : [{ text: " · " }, ...group]));
+      .flatMap((group, index) => (index === 0 ? group : [{ text: " · " }, ...group]));
   }
 
   /** @param {State} state */

@@ -15,26 +15,26 @@ export function createImports(page) {
     if (file) open([file]);
   });
 
-  /** Whether something is dragged that began in the page, as a selected text. */
-  let inner = false;
-  /** Files count everywhere; text only where no field takes it. @param {DragEvent} event */
-  const counts = ({ dataTransfer, target }) => {
+  /** Whether the drag started in the page, such as a selected text. */
+  let isInternalDrag = false;
+  /** Whether the page opens what is dragged: files anywhere, text outside of fields. @param {DragEvent} event */
+  const accepts = ({ dataTransfer, target }) => {
     const types = dataTransfer?.types ?? [];
     if (types.includes("Files")) return true;
     return (
-      !inner &&
+      !isInternalDrag &&
       types.includes("text/plain") &&
       !(target instanceof HTMLInputElement || target instanceof HTMLTextAreaElement)
     );
   };
   document.addEventListener("dragstart", () => {
-    inner = true;
+    isInternalDrag = true;
   });
   document.addEventListener("dragend", () => {
-    inner = false;
+    isInternalDrag = false;
   });
   document.addEventListener("dragover", (event) => {
-    if (!counts(event)) return;
+    if (!accepts(event)) return;
     event.preventDefault();
     hint.hidden = false;
   });
@@ -43,7 +43,7 @@ export function createImports(page) {
   });
   document.addEventListener("drop", (event) => {
     hint.hidden = true;
-    if (!counts(event)) return;
+    if (!accepts(event)) return;
     event.preventDefault();
     const files = [...(event.dataTransfer?.files ?? [])];
     const text = event.dataTransfer?.getData("text/plain") ?? "";
@@ -71,7 +71,7 @@ export function createImports(page) {
         notice: {
           kind: "error",
           text: "The file was not opened: a part of the page could not be loaded. Check the network and try again.",
-          place: null,
+          location: null,
         },
       });
     }

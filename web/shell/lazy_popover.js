@@ -9,15 +9,15 @@ import { dropDown } from "./popover.js";
 /** The text if its code cannot be loaded. */
 const MISSING = "This part of the page could not be loaded. Check the network and try again.";
 
-/** @param {string} button @param {string} panel  Their ids. @param {(popover: Popover) => Promise<Content>} load @param {string} about  Id of the element that says what went wrong. */
+/** @param {string} button @param {string} panel  Their ids. @param {(popover: Popover) => Promise<Content>} load @param {string} about  Id of the element for error messages. */
 export function createLazyPopover(button, panel, load, about) {
   /** @type {Promise<Content> | null} */
   let loading = null;
   /** @type {Content | null} */
   let content = null;
   const message = byId(about);
-  // What is typed before there is anyone to take it would be lost. The panel itself is not inert: it would let clicks
-  // through, and nothing in it would be read out.
+  // Input before the content is loaded would be lost, so the parts are inert. The panel itself is not: clicks would pass through
+  // it, and screen readers would not read the message.
   /** @type {HTMLElement[]} */
   const parts = Array.from(byId(panel).querySelectorAll(":scope > *"));
   const setInert = (/** @type {boolean} */ isInert) => {

@@ -1,5 +1,6 @@
 /** The link in the address. It follows the scenario without history entries, and never overwrites own work. */
 import { Dropped } from "../engine/request_slots.js";
+import { errorMessage } from "../state/error_message.js";
 import { readJson } from "../state/json.js";
 import { blockedBy } from "../state/queries.js";
 import { undoHint } from "./storage.js";
@@ -7,12 +8,12 @@ import { parseView, viewOf } from "./view_part.js";
 
 /** @typedef {import("../state/types.js").State} State */
 
-/** How long the scenario must stand before the address follows, in ms. */
-const SETTLE_MS = 300;
+/** Delay after a change before the address is updated, in ms. */
+const UPDATE_DELAY_MS = 300;
 
 /** @param {{engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
 export function createLink({ engine, dispatch, now }) {
-  /** Fragment that this page wrote or read last. */
+  /** The fragment that this page last wrote or read. */
   let written = location.hash;
   let timer = 0;
 
@@ -20,7 +21,7 @@ export function createLink({ engine, dispatch, now }) {
     if (location.hash !== written) read();
   });
 
-  /** The page's address with the scenario, the view and a run's digests in it. @param {string | undefined} digests @returns {Promise<string>} */
+  /** The address of the page with the scenario, the view and the digests of a run. @param {string | undefined} digests @returns {Promise<string>} */
   async function address(digests) {
     let fragment = await engine.request("encode_link", JSON.stringify(now().scenario));
     for (const [name, part] of [
@@ -36,49 +37,49 @@ export function createLink({ engine, dispatch, now }) {
     const before = location.hash;
     if (blockedBy(now()) === "problems") return;
     if (blockedBy(now()) === "unvalidated") {
-      timer = window.setTimeout(write, SETTLE_MS);
+      timer = window.setTimeout(write, UPDATE_DELAY_MS);
       return;
     }
     try {
-      // What its sender saw goes with a link as long as it stands.
-      const full = await address(now().seen?.text);
-      // An address that came meanwhile is read, not written over.
+      // A received link keeps the digests of its sender until the scenario changes.
+      const full = await address(now().sender?.text);
+      // The user may have entered another address meanwhile.
       if (now().revision !== revision || location.hash !== before) return;
-      // The mark tells a reload that the address only repeats the user's work.
+      // After a reload the state tells that the address only repeats the user's work.
       history.replaceState({ own: now().origin === "own" }, "", full);
       written = location.hash;
     } catch {
-      // A scenario that cannot be a link yet; its problems are shown where they are.
+      // The scenario is too long for a link; the share panel reports it.
     }
   }
 
-  /** The address at the page's start; after a reload it may only repeat the work that this tab kept. @param {boolean} saved */
+  /** Opens the link in the address, unless the address only repeats the saved work of this tab. @param {boolean} saved  Whether there is saved work. */
   async function start(saved) {
-    // An address that this page wrote before a reload is no news.
+    // A link that this page wrote before a reload needs no message.
     if (!saved || history.state?.own !== true) return read(history.state !== null);
     written = location.hash;
-    await open(location.hash.replace(/^#/, ""));
+    await applyParts(location.hash.replace(/^#/, ""));
   }
 
-  /** Shows what a fragment asks to be shown, and keeps what its sender saw. @param {string} fragment */
-  async function open(fragment) {
-    const [view, seen] = await Promise.all(["v", "d"].map((name) => engine.request("link_part", fragment, name)));
-    const part = parseView(view);
-    if (Object.keys(part).length > 0) dispatch({ type: "open", view: part });
-    if (seen) dispatch({ type: "seen", text: seen });
+  /** Applies the view and the sender's digests of a link. @param {string} fragment */
+  async function applyParts(fragment) {
+    const [view, sender] = await Promise.all(["v", "d"].map((name) => engine.request("link_part", fragment, name)));
+    const parsed = parseView(view);
+    if (Object.keys(parsed).length > 0) dispatch({ type: "open", view: parsed });
+    if (sender) dispatch({ type: "sender", text: sender });
   }
 
-  /** Reads the address; shows what it holds as a shared scenario, or says why it cannot. @param {boolean} [isKnown] */
+  /** Opens the link in the address. @param {boolean} [isKnown]  Whether the link needs no message. */
   async function read(isKnown = false) {
     const fragment = location.hash.replace(/^#/, "");
     written = location.hash;
     if (fragment === "") return;
-    // A place in the page is no link; the address takes the scenario back.
+    // A fragment of the page itself, such as `#views`, is not a link.
     if (document.getElementById(fragment)) return write();
     await openLink(fragment, isKnown);
   }
 
-  /** Shows the scenario of a link as a shared one and says so unless it is known, or says why it cannot. @param {string} fragment @param {boolean} [isKnown] */
+  /** Opens a link as a shared scenario, and reports that or an error. @param {string} fragment @param {boolean} [isKnown] */
   async function openLink(fragment, isKnown = false) {
     try {
       const reply = await engine.request("decode_link", fragment);
@@ -90,9 +91,9 @@ export function createLink({ engine, dispatch, now }) {
         const text = `Shared with you: ${name}.${undoHint()}`;
         if (!isKnown) dispatch({ type: "notice", notice: { kind: "info", text } });
       }
-      await open(fragment);
+      await applyParts(fragment);
     } catch (error) {
-      if (!(error instanceof Dropped)) refuse(message(error));
+      if (!(error instanceof Dropped)) refuse(errorMessage(error));
     }
   }
 
@@ -106,17 +107,12 @@ export function createLink({ engine, dispatch, now }) {
     if (
       viewOf(before) === viewOf(state) &&
       before?.scenario === state.scenario &&
-      before?.seen?.text === state.seen?.text
+      before?.sender?.text === state.sender?.text
     )
       return;
     clearTimeout(timer);
-    // Standing by until the user changes something: an address without a link stays as it is.
-    if (state.revision > 0 || written !== "" || viewOf(state) !== "") timer = window.setTimeout(write, SETTLE_MS);
+    // An address without a link stays as it is until the user changes something.
+    if (state.revision > 0 || written !== "" || viewOf(state) !== "") timer = window.setTimeout(write, UPDATE_DELAY_MS);
   }
   return { render, start, address, openLink };
-}
-
-/** @param {unknown} error */
-export function message(error) {
-  return error instanceof Error ? error.message : String(error);
 }

@@ -3,13 +3,12 @@
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Span} Span */
 /**
- * A file that can be saved. `make` gives its parts; `pace` is to be called as it goes on, and throws where the user
- * cancels.
- * @typedef {{name: string, type: string, label: string, make: (pace: (part: number) => void) => Promise<BlobPart[]>}} Offer
+ * A file that can be saved. `make` returns its parts. It reports its progress (0 to 1), and `report` throws if the user cancels.
+ * @typedef {{name: string, type: string, label: string, make: (report: (progress: number) => void) => Promise<BlobPart[]>}} Offer
  * @typedef {{title: string, offers: Offer[]}} Group
  */
 
-/** What lies between the cursors, if both are set. @param {State} state @returns {Span | null} */
+/** The cycles between the cursors, if both are set. @param {State} state @returns {Span | null} */
 export function between({ cursors: { a, b } }) {
   return a === null || b === null || a === b ? null : { start: Math.min(a, b), end: Math.max(a, b) };
 }

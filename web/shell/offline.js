@@ -1,23 +1,23 @@
 /** Offline use from the second visit on, and the message about a newer version. */
 import { byId } from "../dom.js";
 
-/** How often a page that stays open requests a newer version, in ms. */
-const ASK_MS = 3_600_000;
+/** Interval of checks for a newer version, in ms. */
+const CHECK_MS = 3_600_000;
 
-let begun = false;
+let isStarted = false;
 
-/** Starts to keep the page, once it stands: that costs the first view nothing. The sources as they lie are not kept. */
+/** Starts caching for offline use, after the first drawing so that it costs no time. A development build is not cached. */
 export function cacheOffline() {
-  if (begun) return;
-  begun = true;
+  if (isStarted) return;
+  isStarted = true;
   if (!("serviceWorker" in navigator) || document.documentElement.dataset.build === "development") return;
   const { serviceWorker } = navigator;
   const notice = byId("newer-version");
   let isRequested = false;
 
   /** @param {ServiceWorkerRegistration} registration */
-  const waits = (registration) => {
-    // Without a controller it is the first version on this device, and none is newer.
+  const showIfWaiting = (registration) => {
+    // Without a controller this is the first version on this device.
     if (registration.waiting && serviceWorker.controller) notice.hidden = false;
   };
   byId("reload").addEventListener("click", async () => {
@@ -32,22 +32,22 @@ export function cacheOffline() {
   let controlled = serviceWorker.controller !== null;
   serviceWorker.addEventListener("controllerchange", () => {
     if (isRequested) location.reload();
-    // Another tab changed over: this one's files may be gone.
+    // Another tab activated a new version, so files of this one may be missing.
     else if (controlled) notice.hidden = false;
     controlled = true;
   });
   serviceWorker
     .register("sw.js", { updateViaCache: "none" })
     .then((registration) => {
-      waits(registration);
+      showIfWaiting(registration);
       registration.addEventListener("updatefound", () => {
         const next = registration.installing;
-        next?.addEventListener("statechange", () => waits(registration));
+        next?.addEventListener("statechange", () => showIfWaiting(registration));
       });
-      setInterval(() => registration.update().catch(() => {}), ASK_MS);
+      setInterval(() => registration.update().catch(() => {}), CHECK_MS);
       document.documentElement.dataset.offline = "asked";
     })
     .catch(() => {
-      // Private windows and odd hosts refuse; the page works without.
+      // Private windows and some hosts reject service workers; the page works without.
     });
 }

@@ -1,47 +1,48 @@
 /** Opens a file: a scenario, a link as text, a table of packets, saved edges or a recording (recording.js). */
 import { Dropped } from "../engine/request_slots.js";
+import { errorMessage } from "../state/error_message.js";
 import { readJson } from "../state/json.js";
 import { count, si, time } from "../state/number.js";
 import { isStale } from "../state/queries.js";
-import { message } from "./link.js";
+import { locationAround } from "./sender_comparison.js";
 import { undoHint } from "./storage.js";
-import { around } from "./verdict.js";
 
 /** @typedef {import("../state/types.js").State} State */
-/** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>} & import("../state/types.js").Page} Given */
+/** @typedef {(problem: import("../state/types.js").Problem) => string} ProblemText  A problem as text, with the label of its field. */
+/** @typedef {{engine: import("../engine/engine.js").Engine, openLink: (fragment: string) => Promise<void>, problemText: ProblemText} & import("../state/types.js").Page} Given */
 
 /** Maximum bytes of a scenario. */
 const MAX_SCENARIO = 32 << 20;
 /** Maximum bytes of a table of packets, as in the core. */
 const MAX_TABLE = 32 << 20;
-/** First bytes, which determine the kind of file. */
-const HEAD = 16 << 10;
+/** The kind of a file is detected from this many of its first bytes. */
+const HEAD_BYTES = 16 << 10;
 /** Bytes that are read and compared at a time. */
 const PIECE = 4 << 20;
 /** Maximum problems in a message. */
 const MAX_LISTED = 8;
 const LINK = /(?:^|[#&\s])c(?:=|%3D)\d+(?:\.|%2E)/i;
 
-const WHAT =
+const KINDS_OF_FILES =
   "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, edges (CSV or trace) to compare with this run, and recordings: VCD, sigrok sessions, tables of levels (CSV), hex dumps, serial logs, UART annotations, Klipper step commands, and tables of positions.";
 
 /** @param {Given} page @param {File[]} files */
-export async function openFiles({ engine, openLink, dispatch, now }, files) {
-  if (files.length > 1) return notify("error", `${files.length} files at once; drop one. ${WHAT}`);
+export async function openFiles({ engine, openLink, problemText, dispatch, now }, files) {
+  if (files.length > 1) return notify("error", `${files.length} files at once; drop one. ${KINDS_OF_FILES}`);
   return open(files[0]);
 
-  /** @param {"info" | "error"} kind @param {string} text @param {import("../state/types.js").Place | null} [place] */
-  function notify(kind, text, place = null) {
-    dispatch({ type: "notice", notice: { kind, text, place } });
+  /** @param {"info" | "error"} kind @param {string} text @param {import("../state/types.js").TraceLocation | null} [location] */
+  function notify(kind, text, location = null) {
+    dispatch({ type: "notice", notice: { kind, text, location } });
   }
 
   /** @param {File} file */
   async function open(file) {
     try {
-      const head = (await file.slice(0, HEAD).text()).replace(/^\ufeff/, "").trimStart();
+      const head = (await file.slice(0, HEAD_BYTES).text()).replace(/^\ufeff/, "").trimStart();
       const [first] = head.split("\n", 1);
       if (head.startsWith("{")) await scenario(file);
-      else if (file.size <= HEAD && LINK.test(head))
+      else if (file.size <= HEAD_BYTES && LINK.test(head))
         await openLink(
           head
             .slice(head.indexOf("#") + 1)
@@ -50,22 +51,22 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
         );
       else if (/(^|,)start_(cycle|s)(,|\s*$)/.test(first) && /(^|,)bytes(,|\s*$)/.test(first)) await packets(file);
       else if (/^cycle,/.test(first) || /^[0-9a-f]+ [0-9a-f]+\s*$/.test(first)) await edges(file);
-      else await (await import("./recording/recording.js")).openRecording({ engine, dispatch, now }, file);
+      else await (await import("./recording/recording.js")).openRecording({ engine, problemText, dispatch, now }, file);
     } catch (error) {
-      if (!(error instanceof Dropped)) notify("error", `${file.name} cannot be opened: ${message(error)}`);
+      if (!(error instanceof Dropped)) notify("error", `${file.name} cannot be opened: ${errorMessage(error)}`);
     }
   }
 
-  /** The file's text, unless it is too long. @param {File} file @param {number} most */
-  async function whole(file, most) {
-    if (file.size > most) throw new Error(`it has ${si(file.size, "B", 3)}; at most ${si(most, "B", 3)} are allowed`);
+  /** The text of a file, unless it is too long. @param {File} file @param {number} maxBytes */
+  async function textOf(file, maxBytes) {
+    if (file.size > maxBytes) throw new Error(`it has ${si(file.size, "B", 3)}; use at most ${si(maxBytes, "B", 3)}`);
     return file.text();
   }
 
   /** @param {File} file */
   async function scenario(file) {
-    await take(
-      await whole(file, MAX_SCENARIO),
+    await openScenario(
+      await textOf(file, MAX_SCENARIO),
       file,
       (scenario) => `Opened ${scenario.title ? `“${scenario.title}” from ` : ""}${file.name}.`,
     );
@@ -73,29 +74,25 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
 
   /** @param {File} file */
   async function packets(file) {
-    const text = await engine.consider(
+    const text = await engine.compute(
       "replay",
       "replay",
-      await whole(file, MAX_TABLE),
+      await textOf(file, MAX_TABLE),
       JSON.stringify(now().scenario),
     );
-    await take(
+    await openScenario(
       text,
       file,
       (scenario) =>
-        `${count(scenario.source.line.sends.length)} packets of ${file.name} are sent again at their times to the controllers of the previous experiment. The times are those of reception, and replies are not sent again, so the run can differ.`,
+        `The ${count(scenario.source.line.sends.length)} packets of ${file.name} are sent again to the controllers of the previous experiment, at the times of their reception. Replies are not sent again, so the run can differ.`,
     );
   }
 
-  /** Shows a scenario if it is valid. @param {string} json @param {File} file @param {(scenario: any) => string} words */
-  async function take(json, file, words) {
+  /** Opens a scenario if it is valid. @param {string} json @param {File} file @param {(scenario: any) => string} describe */
+  async function openScenario(json, file, describe) {
     const { problems, scenario } = await engine.request("check", json);
     if (problems.length > 0) {
-      const listed = problems
-        .slice(0, MAX_LISTED)
-        .map((/** @type {import("../state/types.js").Problem} */ { path, message }) =>
-          path ? `${path}: ${message}` : message,
-        );
+      const listed = problems.slice(0, MAX_LISTED).map(problemText);
       const more = problems.length > MAX_LISTED ? `; and ${problems.length - MAX_LISTED} more` : "";
       return notify(
         "error",
@@ -106,7 +103,7 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
     if (JSON.stringify(read) === JSON.stringify(now().scenario))
       return notify("info", `${file.name} is the same as the current experiment.`);
     dispatch({ type: "replace", scenario: read, origin: "shared" });
-    notify("info", `${words(read)}${undoHint()}`);
+    notify("info", `${describe(read)}${undoHint()}`);
   }
 
   /** Compares saved edges with the run. @param {File} file */
@@ -137,19 +134,19 @@ export async function openFiles({ engine, openLink, dispatch, now }, files) {
       return notify("info", `${file.name} is bit-identical: ${count(same)} rows, ${range}.`);
     }
     const { cycle, line, signals } = difference;
-    const which = signals.map(
+    const changes = signals.map(
       (/** @type {[string, number, number]} */ [name, file, run]) =>
         `${name} is ${file} in the file, but ${run} in the run`,
     );
     const what =
-      which.length > 0
-        ? which.slice(0, 4).join(", ") + (which.length > 4 ? `, and ${which.length - 4} more` : "")
+      changes.length > 0
+        ? changes.slice(0, 4).join(", ") + (changes.length > 4 ? `, and ${changes.length - 4} more` : "")
         : "a row without a change";
-    const place = around(cycle, cycle, summary.end_cycle, controller);
+    const location = locationAround(cycle, cycle, summary.end_cycle, controller);
     notify(
       "error",
       `${file.name} differs from this run: after ${count(comparison.same)} equal rows the first difference is in line ${count(line)}, cycle ${count(cycle)} (${seconds(cycle)}): ${what}.`,
-      place,
+      location,
     );
   }
 }

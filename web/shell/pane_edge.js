@@ -1,15 +1,15 @@
 /** A line between two panes, moved by pointer and keys. */
 import { element } from "../dom.js";
-import { listen } from "./commands.js";
+import { registerCommands } from "./commands.js";
 
 /** @typedef {import("./pane_layout.js").Edge} Edge */
 
-/** A key moves an edge by this many CSS pixels, with Shift by five times as many. */
+/** Movement per key press in CSS pixels; with Shift five times as far. */
 const STEP_PX = 16;
 
 /**
  * @param {Edge} edge
- * @param {{resize: (px: number, before: number, after: number) => void, reset: (byKey: boolean) => void}} actions  `resize` is given the sizes of both panes, too.
+ * @param {{resize: (px: number, before: number, after: number) => void, reset: (byKey: boolean) => void}} actions  `resize`: the new size of the pane before the edge, and the current sizes of both panes.
  */
 export function createEdge(edge, { resize, reset }) {
   const { pane, label, upright, place } = edge;
@@ -29,16 +29,16 @@ export function createEdge(edge, { resize, reset }) {
   document.querySelector(edge.after)?.before(node);
   if (place) node.style.gridArea = upright ? place.area : `${place.area} / 1 / ${place.area} / -1`;
 
-  /** The first box with a size of some elements. @param {string} css */
+  /** The box of the first visible element of a selector. @param {string} css */
   const boxOf = (css) =>
     [...document.querySelectorAll(css)].map((each) => each.getBoundingClientRect()).find(({ width }) => width > 0) ??
     new DOMRect();
   /** @param {DOMRect} box */
   const sizeOf = ({ width, height }) => (upright ? width : height);
   /** @param {number} px */
-  const to = (px) => resize(px, sizeOf(boxOf(edge.before)), sizeOf(boxOf(edge.after)));
+  const moveTo = (px) => resize(px, sizeOf(boxOf(edge.before)), sizeOf(boxOf(edge.after)));
   /** @param {number} px */
-  const by = (px) => to(sizeOf(boxOf(edge.before)) + px);
+  const moveBy = (px) => moveTo(sizeOf(boxOf(edge.before)) + px);
 
   node.addEventListener("pointerdown", (event) => {
     if (event.button !== 0) return;
@@ -49,20 +49,20 @@ export function createEdge(edge, { resize, reset }) {
   node.addEventListener("pointermove", (event) => {
     if (!node.hasPointerCapture(event.pointerId)) return;
     const { left, top } = boxOf(edge.before);
-    to((upright ? event.clientX - left : event.clientY - top) - 4);
+    moveTo((upright ? event.clientX - left : event.clientY - top) - 4);
   });
   node.addEventListener("dblclick", () => reset(false));
-  listen(node, "Line between two panes", [
-    { keys: ["ArrowLeft", "ArrowUp"], text: "make the previous pane smaller", run: () => by(-STEP_PX) },
-    { keys: ["ArrowRight", "ArrowDown"], text: "make the previous pane larger", run: () => by(STEP_PX) },
-    { keys: ["Shift+ArrowLeft", "Shift+ArrowUp"], text: "much smaller", run: () => by(-5 * STEP_PX) },
-    { keys: ["Shift+ArrowRight", "Shift+ArrowDown"], text: "much larger", run: () => by(5 * STEP_PX) },
-    { keys: ["Home"], text: "minimum size", run: () => to(0) },
-    { keys: ["End"], text: "maximum size", run: () => to(1e6) },
+  registerCommands(node, "Line between two panes", [
+    { keys: ["ArrowLeft", "ArrowUp"], text: "make the previous pane smaller", run: () => moveBy(-STEP_PX) },
+    { keys: ["ArrowRight", "ArrowDown"], text: "make the previous pane larger", run: () => moveBy(STEP_PX) },
+    { keys: ["Shift+ArrowLeft", "Shift+ArrowUp"], text: "make it much smaller", run: () => moveBy(-5 * STEP_PX) },
+    { keys: ["Shift+ArrowRight", "Shift+ArrowDown"], text: "make it much larger", run: () => moveBy(5 * STEP_PX) },
+    { keys: ["Home"], text: "minimum size", run: () => moveTo(0) },
+    { keys: ["End"], text: "maximum size", run: () => moveTo(1e6) },
     { keys: ["Enter"], text: "reset; fold or unfold the form", run: () => reset(true) },
   ]);
 
-  /** Shows where it is, unless it is hidden. @param {(css: string) => boolean} isHiddenBy  Whether a pane of this selector hides it. */
+  /** Updates its visibility and position. @param {(css: string) => boolean} isHiddenBy  Whether a pane hides it. */
   function render(isHiddenBy) {
     node.hidden = isHiddenBy(edge.before) || isHiddenBy(edge.after);
     const [before, after] = [sizeOf(boxOf(edge.before)), sizeOf(boxOf(edge.after))];

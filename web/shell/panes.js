@@ -1,7 +1,7 @@
 /** Panes of a wide screen: edges to drag, and views that fold or maximize. A narrow screen has tabs instead. */
 import { button, byId, element } from "../dom.js";
 import { hasPanel, isOffered, PLACED, SHARED, VIEWS } from "../state/views.js";
-import { listen } from "./commands.js";
+import { registerCommands } from "./commands.js";
 import { bandsOf, template } from "./grid.js";
 import { createEdge } from "./pane_edge.js";
 import {
@@ -34,7 +34,7 @@ export function createPanes({ dispatch, now }) {
       resize(px, before, after) {
         const bands = bandsOf(shownViews(now()));
         const heights = bands.map((band) => Math.max(...band.map(({ name }) => byId(`view-${name}`).offsetHeight)));
-        change(resized(edge, px, { before, after, heights, bands, room: views.clientHeight }));
+        change(resized(edge, px, { before, after, heights, bands, total: views.clientHeight }));
       },
       reset(byKey) {
         const isUnfolded = byKey && edge.pane === "form" && now().panes.form !== 0;
@@ -50,10 +50,10 @@ export function createPanes({ dispatch, now }) {
   wide.addEventListener("change", () => apply(now()));
   new ResizeObserver(showEdges).observe(views);
 
-  /** Buttons in the heads of views that share a place, each to another of them. @param {Placed[]} here */
-  function createSideButtons(here) {
-    return here.flatMap(({ name }) =>
-      here
+  /** Buttons in the headers of views that share an area, each for another of them. @param {Placed[]} sharing */
+  function createSideButtons(sharing) {
+    return sharing.flatMap(({ name }) =>
+      sharing
         .filter((other) => other.name !== name)
         .map((view) => {
           const made = element("button", { type: "button", class: "side", "data-side": view.name }, view.title);
@@ -64,7 +64,7 @@ export function createPanes({ dispatch, now }) {
     );
   }
 
-  /** Fold and maximize, in the head of a view. @param {Placed} view */
+  /** The buttons Fold and Maximize in the header of a view. @param {Placed} view */
   function createPaneButtons({ name: view, title }) {
     const section = byId(`view-${view}`);
     const head = /** @type {HTMLElement} */ (section.querySelector(".head"));
@@ -78,7 +78,7 @@ export function createPanes({ dispatch, now }) {
     head.addEventListener("dblclick", (event) => {
       if (!(/** @type {Element} */ (event.target).closest("button, input, select, label"))) maximize();
     });
-    listen(section, "Any view on a wide screen", [
+    registerCommands(section, "Any view on a wide screen", [
       {
         keys: ["f"],
         text: "maximize the view, or show all views",
@@ -90,7 +90,7 @@ export function createPanes({ dispatch, now }) {
     ]);
   }
 
-  /** An edge is hidden next to a small view, and while one view fills the screen; the form's stays. */
+  /** Hides the edges next to a folded or empty view, and all but the form's while one view fills the screen. */
   function showEdges() {
     const state = now();
     const small = PLACED.filter(({ name }) => isSmall(state, name)).map(({ name }) => byId(`view-${name}`));
@@ -148,7 +148,7 @@ export function createPanes({ dispatch, now }) {
     const isChanged =
       !isApplied ||
       before?.panes !== state.panes ||
-      before?.bare !== state.bare ||
+      before?.emptyViews !== state.emptyViews ||
       before?.result !== state.result ||
       before?.sides !== state.sides ||
       before?.scenario.plant !== state.scenario.plant ||

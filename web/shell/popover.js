@@ -1,11 +1,11 @@
 /** Panels that open under a button of the header. The browser closes them on Escape and on a click elsewhere. */
 import { byId } from "../dom.js";
 
-/** Least distance of a panel from the window's edge, in CSS pixels. */
+/** Minimum distance of a panel from the edge of the window, in CSS pixels. */
 const EDGE = 8;
-/** Between a panel and its button. */
+/** Distance between a panel and its button, in CSS pixels. */
 const GAP = 4;
-/** With less room than this a panel opens the other way. */
+/** With less space than this below the button, a panel opens above it, in CSS pixels. */
 const MIN_PX = 260;
 
 /**
@@ -27,7 +27,7 @@ export function dropDown(button, panel, onOpen) {
     const { right, top, bottom } = opener.getBoundingClientRect();
     const { clientWidth: wide, clientHeight: high } = document.documentElement;
     const [above, under] = [top - GAP - EDGE, high - Math.max(EDGE, bottom + GAP) - EDGE];
-    // Over the button where there is too little room under it.
+    // Above the button if there is too little space below it.
     const over = under < Math.min(box.scrollHeight, MIN_PX) && above > under;
     box.style.top = over ? "auto" : `${Math.max(EDGE, bottom + GAP)}px`;
     box.style.bottom = over ? `${high - top + GAP}px` : "auto";

@@ -26,7 +26,7 @@ export function hostText({ host, controllers }) {
   const acknowledged = sum(jobs.map((job) => job.acknowledged));
   const parts = [];
   if (lost.length > 0) {
-    // The others' names would say nothing where there is one controller only.
+    // A single controller needs no name.
     const names =
       controllers.length > 1
         ? lost.map(({ controller, why }) => `on controller ${controller + 1}: ${why}`)

@@ -5,9 +5,9 @@ import { blockedBy } from "../state/queries.js";
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {Pick<import("../engine/engine.js").Engine, "latest" | "run" | "cancel" | "revive">} Engine */
 
-/** Rest after a change before it runs, in ms: typing a number is one run. */
-const REST_MS = 120;
-/** A run without progress after this time is still planning, in ms. */
+/** Delay after a change before it runs, in ms, so that typing a number is one run. */
+const RUN_DELAY_MS = 120;
+/** A run without progress after this time is shown as planning, in ms. */
 const PLANNING_MS = 100;
 
 /**
@@ -22,11 +22,11 @@ export function nextStep(state, ran) {
   return ran === state.revision ? "done" : "run";
 }
 
-/** @param {{engine: Engine, blocked: () => void, started: () => void} & import("../state/types.js").Page} page  `blocked` is called where nothing is to come. */
+/** @param {{engine: Engine, blocked: () => void, started: () => void} & import("../state/types.js").Page} page  `blocked` is called if the scenario cannot run. */
 export function createRunner({ engine, blocked, started, dispatch, now }) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
-  /** Revision whose run has begun; none runs twice. */
+  /** Revision that ran last; no revision runs twice. */
   let ran = -1;
 
   async function validate() {
@@ -54,12 +54,12 @@ export function createRunner({ engine, blocked, started, dispatch, now }) {
 
   return {
     validate,
-    /** After a change of the validation, of an approval or of a draft. */
+    /** Runs the scenario if it is due; called after each change of validation, approval or drafts. */
     plan() {
       clearTimeout(timer);
       const step = nextStep(now(), ran);
       if (step === "blocked") blocked();
-      else if (step === "run") timer = setTimeout(run, now().result ? REST_MS : 0);
+      else if (step === "run") timer = setTimeout(run, now().result ? RUN_DELAY_MS : 0);
     },
     cancel() {
       engine.cancel(now().revision);
@@ -70,7 +70,7 @@ export function createRunner({ engine, blocked, started, dispatch, now }) {
       ran = -1;
       validate();
     },
-    /** The engine crashed: this scenario is not tried again by itself. */
+    /** After a crash the scenario runs again only on request. */
     giveUp() {
       ran = now().revision;
     },

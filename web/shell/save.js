@@ -10,6 +10,6 @@ export function save(name, type, parts) {
   link.href = URL.createObjectURL(new Blob(parts, { type }));
   link.download = name;
   link.click();
-  // The browser reads it after this task; a minute is more than it needs.
+  // The browser reads the file after this task; a minute is enough.
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }

@@ -1,28 +1,28 @@
 /** Restores the work of an earlier visit, and offers that of another tab. */
 import { initial, OWN_TEXTS } from "../state/initial.js";
 import { readJson } from "../state/json.js";
-import { loadGood, loadHistory, loadNewer, loadPrevious, loadScenario } from "./storage.js";
+import { loadHistory, loadLastValid, loadNewer, loadPrevious, loadScenario } from "./storage.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../engine/engine.js").Engine} Engine */
 
 /**
- * the user's scenario, also with problems in it; undo brings back the one that was set aside for it.
- * @param {Engine} engine @param {string} fallback  The scenario of a first visit. @param {string} version  Of the page: the history of another one is not read.
+ * The saved work of the user, which may have problems. Undo restores the work that it replaced.
+ * @param {Engine} engine @param {string} fallback  The scenario of a first visit. @param {string} version  Of the page; the history of another version is ignored.
  * @returns {Promise<{left: State, good: string | null}>}  `good` is the last scenario that ran, if this one cannot.
  */
 export async function savedWork(engine, fallback, version) {
   const [saved, previous] = [loadScenario(), loadPrevious()];
   if (saved === null) return { left: initial(readJson(fallback)), good: null };
-  // Where the core cannot be fetched, the scenario stays as it was saved.
+  // If the core cannot be loaded, the scenario stays as it was saved.
   const read = (/** @type {string} */ json) =>
     engine.request("check", json).catch(() => ({ scenario: json, problems: [] }));
   const { scenario, problems } = await read(saved);
   const { past, future } = loadHistory(version);
-  const isAside = past.length === 0 && previous !== null && previous !== saved;
-  const aside = isAside ? [momentOf((await read(previous)).scenario)] : past;
-  const left = { ...initial(readJson(scenario)), past: aside, future };
-  return { left, good: problems.length > 0 ? loadGood() : null };
+  const hasPrevious = past.length === 0 && previous !== null && previous !== saved;
+  const history = hasPrevious ? [momentOf((await read(previous)).scenario)] : past;
+  const left = { ...initial(readJson(scenario)), past: history, future };
+  return { left, good: problems.length > 0 ? loadLastValid() : null };
 }
 
 /** @param {string} scenario @returns {import("../state/types.js").Moment} */

@@ -3,15 +3,15 @@
 /** @typedef {import("../state/types.js").Spectra} Spectra */
 /** @typedef {import("../state/types.js").Timing} Timing */
 
-/** Rows as CSV; a text that holds a separator or a quote is quoted. @param {(string | number | null | undefined)[][]} rows */
+/** Rows as CSV. @param {(string | number | null | undefined)[][]} rows */
 export function csv(rows) {
   const field = (/** @type {string} */ text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   return rows.map((row) => `${row.map((value) => field(String(value ?? ""))).join(",")}\n`).join("");
 }
 
-/** Amplitudes of the harmonics (peak), and the total distortion to the highest one in the row `thd`, and what a sensor feels of it in the row `thd_filtered`. @param {Spectra} spectra */
+/** Peak amplitudes of the harmonics; the row `thd` has the total distortion, and `thd_filtered` that of the filtered acceleration. @param {Spectra} spectra */
 export function harmonicsTable({ ideal, pulses }) {
-  const some = ideal ?? pulses;
+  const first = ideal ?? pulses;
   const names = /** @type {const} */ (["position", "speed", "acceleration"]);
   const kinds = [ideal, pulses];
   const head = [
@@ -19,10 +19,10 @@ export function harmonicsTable({ ideal, pulses }) {
     "frequency_hz",
     ...["ideal", "pulses"].flatMap((kind) => names.map((name) => `${kind}_${name}`)),
   ];
-  if (!some) return csv([head]);
-  const rows = Array.from(some.position, (_, i) => [
+  if (!first) return csv([head]);
+  const rows = Array.from(first.position, (_, i) => [
     i + 1,
-    (i + 1) * some.fundamental_hz,
+    (i + 1) * first.fundamental_hz,
     ...kinds.flatMap((kind) => names.map((name) => kind?.[name][i])),
   ]);
   const total = kinds.flatMap((kind) => [kind?.thd_position, kind?.thd_speed, kind?.thd_acceleration]);
@@ -60,7 +60,7 @@ export function marginsTable(timing) {
   ]);
 }
 
-/** The violations that the page knows of: the first 1000. @param {Timing | null} timing @param {number} clockHz */
+/** The first 1000 violations. @param {Timing | null} timing @param {number} clockHz */
 export function violationsTable(timing, clockHz) {
   const head = ["cycle", "time_s", "channel", "rule", "measured_cycles", "required_cycles"];
   return csv([

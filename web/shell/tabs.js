@@ -7,17 +7,17 @@ import { isOffered, openTab, VIEWS } from "../state/views.js";
 /** @param {import("../state/types.js").Page} page */
 export function createTabs({ dispatch }) {
   const tabs = VIEWS.map((view) => {
-    const { name, title, tab: text = title } = view;
-    const made = element(
+    const { name, title, tab: label = title } = view;
+    const tab = element(
       "button",
       { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `view-${name}` },
-      text,
+      label,
     );
-    made.addEventListener("click", () => dispatch({ type: "view", view: name }));
-    return { view, tab: made, section: byId(`view-${name}`) };
+    tab.addEventListener("click", () => dispatch({ type: "view", view: name }));
+    return { view, tab, section: byId(`view-${name}`) };
   });
   byId("tabs").append(...tabs.map(({ tab }) => tab));
-  arrows(tabs.map(({ tab }) => tab));
+  addTabKeys(tabs.map(({ tab }) => tab));
   const narrow = matchMedia("(max-width: 899px)");
   const sheet = /** @type {HTMLDetailsElement} */ (byId("sheet"));
   const fold = () => {
@@ -32,15 +32,15 @@ export function createTabs({ dispatch }) {
     for (const { view, tab, section } of tabs) {
       const open = view.name === shown;
       tab.hidden = !isOffered(view, state);
-      choose(tab, open);
+      markTab(tab, open);
       section.classList.toggle("open", open);
     }
   }
   return { render };
 }
 
-/** The arrow keys go from tab to tab, round, Home and End to the first and the last, and open what they come to. @param {HTMLElement[]} tabs */
-export function arrows(tabs) {
+/** Adds the keys of tabs: arrow keys (with wraparound), Home and End open another tab. @param {HTMLElement[]} tabs */
+export function addTabKeys(tabs) {
   for (const tab of tabs) {
     tab.addEventListener("keydown", (event) => {
       const offered = tabs.filter((each) => !each.hidden);
@@ -55,8 +55,8 @@ export function arrows(tabs) {
   }
 }
 
-/** Marks the open one of some tabs; it alone is in the order of the Tab key. @param {HTMLElement} tab @param {boolean} open */
-export function choose(tab, open) {
+/** Marks a tab as open or not; only the open one is reachable with the Tab key. @param {HTMLElement} tab @param {boolean} open */
+export function markTab(tab, open) {
   tab.setAttribute("aria-selected", String(open));
   tab.tabIndex = open ? 0 : -1;
 }

@@ -1,5 +1,5 @@
 /** The theme button. */
-import { byId, say } from "../dom.js";
+import { byId, setText } from "../dom.js";
 import { loadTheme, saveTheme } from "./storage.js";
 
 const THEMES = {
@@ -8,7 +8,7 @@ const THEMES = {
   dark: ["☾", "Colors: dark"],
 };
 
-/** Applies the saved theme, and each one that is selected. */
+/** Applies the saved theme and the selected ones. */
 export function createTheme() {
   const button = byId("theme");
   const names = /** @type {(keyof typeof THEMES)[]} */ (Object.keys(THEMES));
@@ -16,7 +16,7 @@ export function createTheme() {
   const apply = () => {
     document.documentElement.dataset.theme = theme;
     const [sign, label] = THEMES[theme];
-    say(button, sign);
+    setText(button, sign);
     button.title = label;
     button.setAttribute("aria-label", label);
     document.dispatchEvent(new Event("themechange"));

@@ -1,9 +1,9 @@
 /**
- * The view as a link's part `v` writes it: parts between dots, each of which says by its first letter what it is.
+ * The view in part `v` of a link: parts separated by dots, each with a letter for its kind.
  *
  *     v=120-4500.k1.x2.a300.b900.tpackets.stiming.umm
  *
- * | part | what |
+ * | part | meaning |
  * | --- | --- |
  * | `120-4500` | shown time, first and last cycle |
  * | `k1` | selected controller, 0 the first |
@@ -15,8 +15,8 @@
  * | `umm` | unit of the motion view |
  * | `ysine` | tab of the study |
  *
- * What is as on a fresh page is left out; parts that cannot be read, or are not known (a later version's), are
- * ignored, of two of one kind the first counts. A part that was published keeps its meaning for ever.
+ * Defaults are left out. Invalid and unknown parts, such as those of a later version, are ignored; of two parts of one kind the
+ * first counts. A published part never changes its meaning.
  */
 
 import { NAMES, SHARED } from "../state/views.js";
@@ -27,12 +27,12 @@ import { NAMES, SHARED } from "../state/views.js";
 /** Tabs of the study, in their order. @type {import("../state/types.js").StudyName[]} */
 export const STUDIES = ["compare", "measures", "tables", "sine", "torque", "motor"];
 const UNITS = ["steps", "mm", "deg"];
-/** No part is longer, and there are not more kinds of them. */
-const MOST = 200;
+/** Maximum characters that are read. */
+const MAX_LENGTH = 200;
 
-/** What stands behind a letter: how it is put into a view, and what a view has of it. @typedef {{put: (view: ViewPart, text: string) => void, of: (view: ViewPart) => any}} Part */
+/** A kind of part: `put` adds a text to a view, `of` returns its value in a view. @typedef {{put: (view: ViewPart, text: string) => void, of: (view: ViewPart) => any}} Part */
 
-/** A field of the view; of two parts the first counts. @param {Exclude<keyof ViewPart, "sides" | "window">} name @param {(text: string) => any} read @returns {Part} */
+/** A part for a field of the view. @param {Exclude<keyof ViewPart, "sides" | "window">} name @param {(text: string) => any} read @returns {Part} */
 const field = (name, read) => ({
   put: (view, text) => {
     const value = read(text);
@@ -41,7 +41,7 @@ const field = (name, read) => ({
   of: (view) => view[name],
 });
 
-/** Which of the views that share a place is open. @param {string} area @returns {Part} */
+/** A part for the selected view of a shared area. @param {string} area @returns {Part} */
 const side = (area) => ({
   put: (view, text) => {
     const name = known(text, SHARED.get(area)?.map(({ name }) => name) ?? []);
@@ -63,9 +63,9 @@ const PARTS = {
   o: side("motion"),
 };
 
-/** @param {string} text @param {number} [most] */
-function number(text, most = Number.MAX_SAFE_INTEGER) {
-  return /^\d{1,16}$/.test(text) && Number(text) <= most ? Number(text) : undefined;
+/** @param {string} text @param {number} [max] */
+function number(text, max = Number.MAX_SAFE_INTEGER) {
+  return /^\d{1,16}$/.test(text) && Number(text) <= max ? Number(text) : undefined;
 }
 
 /** @param {string} text @param {string[]} names */
@@ -73,11 +73,11 @@ function known(text, names) {
   return names.includes(text) ? text : undefined;
 }
 
-/** What a part `v` asks to be shown; an empty object where nothing of it can be read. @param {string | undefined} text @returns {ViewPart} */
+/** The view of a part `v`; empty if it is invalid. @param {string | undefined} text @returns {ViewPart} */
 export function parseView(text) {
   /** @type {ViewPart} */
   const view = {};
-  for (const part of (text ?? "").slice(0, MOST).split(".")) {
+  for (const part of (text ?? "").slice(0, MAX_LENGTH).split(".")) {
     const [start, end] = part.split("-").map((cycle) => number(cycle));
     if (start !== undefined && end !== undefined && start < end && part === `${start}-${end}`)
       view.window ??= { start, end };
@@ -96,10 +96,10 @@ export function writeView(view) {
   return parts.join(".");
 }
 
-/** The view of a state as a part `v`; empty where all is as on a fresh page. @param {State | undefined} state */
+/** The view of a state as part `v`; empty if all values are defaults. @param {State | undefined} state */
 export function viewOf(state) {
   if (!state) return "";
-  if (state.awaited) return writeView(state.awaited);
+  if (state.pendingView) return writeView(state.pendingView);
   const { window, controller, axis, cursors, view, sides, unit, study } = state;
   return writeView({
     window: window ?? undefined,

@@ -73,8 +73,8 @@ export function changed(state, scenario, origin) {
     drafts: {},
     edited: null,
     notice: null,
-    awaited: null,
-    seen: null,
+    pendingView: null,
+    sender: null,
   };
 }
 

@@ -1,16 +1,16 @@
 /** The state that the page starts with. */
-import { AS_THEY_ARE } from "./row_choices.js";
+import { DEFAULT_ROWS } from "./row_choices.js";
 
 /** @typedef {import("./types.js").State} State */
 
 /** Markers 0 to 9, none of them set. @type {(number | null)[]} */
 const NO_MARKERS = Array(10).fill(null);
-/** All packets are shown. @type {State["filter"]} */
+/** The filter that shows all packets. @type {State["filter"]} */
 export const NO_FILTER = { text: "", kind: "", address: null, outcome: "", only: false };
-/** Name and note are the user's. @type {import("./types.js").Borrowed} */
+/** Name and note of the user's own experiment. @type {import("./types.js").Borrowed} */
 export const OWN_TEXTS = { title: false, note: false };
 
-/** The part of the view that does not outlive a replaced scenario. */
+/** The part of the state that is reset when the scenario is replaced. */
 export const FRESH_VIEW = {
   controller: 0,
   window: null,
@@ -51,14 +51,14 @@ export function initial(scenario) {
     box: false,
     baseline: null,
     difference: false,
-    awaited: null,
+    pendingView: null,
     unit: "steps",
     allSignals: false,
     view: "motion",
     study: "compare",
     notice: null,
-    panes: { form: null, rows: null, columns: null, folded: [], open: [], largest: null, pulses: AS_THEY_ARE },
-    bare: [],
-    seen: null,
+    panes: { form: null, rows: null, columns: null, folded: [], open: [], largest: null, pulses: DEFAULT_ROWS },
+    emptyViews: [],
+    sender: null,
   };
 }

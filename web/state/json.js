@@ -1,9 +1,9 @@
 /** Scenarios as JSON text. Whole numbers above 2⁵³, such as times of segments, are BigInt. */
 
-/** Whole digits, without point and power. */
+/** A whole number without decimal point and exponent. */
 export const WHOLE = /^-?\d+$/;
 
-// What JSON.stringify asks of a BigInt; a browser without rawJSON writes the nearest number.
+// Called by JSON.stringify. A browser without rawJSON writes the nearest number.
 Object.defineProperty(BigInt.prototype, "toJSON", {
   configurable: true,
   value() {

@@ -1,5 +1,5 @@
 /**
- * Everything that can change the state; no code.
+ * The messages that change the state. Types only.
  *
  * @typedef {import("./types.js").State} State
  * @typedef {{type: "edit", path: string, value: any, joins?: boolean, moved?: import("./paths.js").Moved}
@@ -17,7 +17,7 @@
  *   | {type: "baseline", baseline: State["baseline"]} | {type: "difference", on: boolean}
  *   | {type: "harmonic", harmonic: number | null}
  *   | {type: "open", view: import("./types.js").ViewPart}
- *   | {type: "seen", text: string} | {type: "compared", text: string, verdict: import("./types.js").Verdict}
+ *   | {type: "sender", text: string} | {type: "compared", text: string, comparison: import("./types.js").SenderComparison}
  *   | {type: "hover", cycle: number | null}
  *   | {type: "highlight", highlighted: State["highlighted"]}
  *   | {type: "marker", digit: number, cycle: number | null}
@@ -28,7 +28,7 @@
  *   | {type: "all-signals", on: boolean}
  *   | {type: "controller", controller: number} | {type: "side", area: string, side: string}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]}
- *   | {type: "pane", panes: Partial<import("./types.js").Panes>} | {type: "bare", view: string, bare: boolean}
+ *   | {type: "pane", panes: Partial<import("./types.js").Panes>} | {type: "empty", view: string, isEmpty: boolean}
  *   | {type: "rows", rows: Partial<import("./row_choices.js").RowChoices>}
  *   | {type: "view", view: string} | {type: "study", study: import("./types.js").StudyName}
  *   | {type: "notice", notice: State["notice"]}} Message

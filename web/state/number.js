@@ -24,7 +24,7 @@ export function si(value, unit, digits = 4) {
   return `${trim((value / scale).toPrecision(digits))} ${prefix}${unit}`.trim();
 }
 
-/** A rate or count of steps: grouped digits without a prefix. @param {number} value @param {string} unit */
+/** A rate or count of steps, with grouped digits and without a prefix. @param {number} value @param {string} unit */
 export function plain(value, unit) {
   if (!Number.isFinite(value)) return "–";
   const magnitude = Math.abs(value);
@@ -38,7 +38,7 @@ function group(digits) {
   return digits.replace(/\B(?=(\d{3})+(?!\d))/g, "\u202f");
 }
 
-/** Significant digits without needless zeros. @param {number} value @param {number} [digits] */
+/** A number with significant digits, without trailing zeros. @param {number} value @param {number} [digits] */
 export function short(value, digits = 5) {
   if (!Number.isFinite(value)) return "–";
   return trim(value.toPrecision(digits));
@@ -60,9 +60,9 @@ function trim(text) {
   return (plain.includes(".") && !plain.includes("e") ? plain.replace(/\.?0+$/, "") : plain).replace("-", "−");
 }
 
-/** A number and its noun, in the plural if needed. @param {number} number @param {string} thing */
-export function counted(number, thing) {
-  return `${count(number)} ${thing}${number === 1 ? "" : "s"}`;
+/** A number and its noun, in the plural if needed. @param {number} number @param {string} noun */
+export function counted(number, noun) {
+  return `${count(number)} ${noun}${number === 1 ? "" : "s"}`;
 }
 
 /** Texts of the core with the page's unit signs. @param {string} text */

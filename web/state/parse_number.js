@@ -1,6 +1,6 @@
 /** Reads numbers as people type them: SI prefixes (`1.2k`, `50 us`), units (`9600 bps`, `10 mm/s`), a decimal comma. */
 
-/** @typedef {{integer?: boolean, clockHz?: number, least?: number, most?: number}} Options  The range is only for suggestions. */
+/** @typedef {{integer?: boolean, clockHz?: number, min?: number, max?: number}} Options  The range is only for suggestions. */
 /** @typedef {{value: number} | {message: string}} Parsed */
 
 /** @type {{[prefix: string]: number}} */
@@ -46,14 +46,14 @@ function split(text) {
  */
 export function parseNumber(text, unit, options = {}) {
   const example = exampleOf(unit, options);
-  if (text.trim() === "") return { message: `A number is missing; give one, such as ${example}.` };
+  if (text.trim() === "") return { message: `A number is missing; use one, such as ${example}.` };
   const parts = split(text);
-  if (!parts) return { message: `“${text.trim()}” is not a number; give one, such as ${example}.` };
+  if (!parts) return { message: `“${text.trim()}” is not a number; use one, such as ${example}.` };
   const { digits, suffix } = parts;
   // A comma with three digits separates thousands for some people and decimals for others.
   if (/^[-+−]?[1-9]\d{0,2}(,\d{3})+$/.test(digits)) {
     return {
-      message: `“${digits}” can mean ${digits.replaceAll(",", "")} or ${digits.replace(",", ".")}; write it without a comma.`,
+      message: `“${digits}” can mean ${digits.replaceAll(",", "")} or ${digits.replace(",", ".")}; use a number without a comma.`,
     };
   }
   const mantissa = digits.replace("−", "-").replace(",", ".");
@@ -130,11 +130,11 @@ function shifted(mantissa, power) {
 }
 
 /** @param {number} value @param {Options} options @param {string} text @returns {Parsed} */
-function checked(value, { integer, least = -Infinity, most = Infinity }, text) {
+function checked(value, { integer, min = -Infinity, max = Infinity }, text) {
   if (!Number.isFinite(value)) return { message: `“${text.trim()}” is too large for a number.` };
   if (integer && !Number.isInteger(value)) {
-    const next = [Math.floor, Math.ceil].map((round) => Math.min(most, Math.max(least, round(value))));
-    return { message: `${value} is not a whole number; give ${[...new Set(next)].join(" or ")}.` };
+    const next = [Math.floor, Math.ceil].map((round) => Math.min(max, Math.max(min, round(value))));
+    return { message: `${value} is not a whole number; use ${[...new Set(next)].join(" or ")}.` };
   }
   return { value };
 }

@@ -1,6 +1,6 @@
 /** Paths into a scenario, such as `controllers[0].axes[1].moves`. */
 
-/** @typedef {[from: string, to: string | null][]} Moved  Where parts of the scenario went: from path to path, null where they are gone. */
+/** @typedef {[from: string, to: string | null][]} Moved  Moved parts of the scenario, from path to path; null if they were removed. */
 
 /** `a.b[2].c` as its parts. @param {string} path @returns {string[]} */
 export function parts(path) {
@@ -12,7 +12,7 @@ export function get(value, path) {
   return parts(path).reduce((inner, part) => inner?.[part], value);
 }
 
-/** A copy with one value replaced; what is not on the way is shared. @param {any} value @param {string} path @param {any} leaf */
+/** A copy with one value replaced; it shares all other parts. @param {any} value @param {string} path @param {any} leaf */
 export function set(value, path, leaf) {
   const [first, ...rest] = parts(path);
   if (first === undefined) return leaf;
@@ -21,7 +21,7 @@ export function set(value, path, leaf) {
   return copy;
 }
 
-/** Where a path goes when parts of the scenario move; null where it is gone. @param {string} at @param {Moved} moved */
+/** The new path after parts of the scenario moved; null if it was removed. @param {string} at @param {Moved} moved */
 export function movedTo(at, moved) {
   const found = moved.find(([from]) => isWithin(at, from));
   if (!found) return at;

@@ -1,4 +1,4 @@
-/** What the page derives from the state. */
+/** Values derived from the state. */
 
 /** @typedef {import("./types.js").State} State */
 
@@ -8,7 +8,7 @@ export function selected({ result }) {
 }
 
 /**
- * Numbers derived from the scenario in the form; where it is refused, those of the last run's scenario.
+ * The derived values of the scenario in the form; if it is invalid, those of the last run.
  * @param {State} state @returns {{derived: import("./types.js").Derived | null, fresh: boolean}}
  */
 export function derivedShown({ validation, drafts, result, validated, revision }) {
@@ -16,7 +16,7 @@ export function derivedShown({ validation, drafts, result, validated, revision }
   return { derived: (fresh ? validation?.derived : result?.derived) ?? null, fresh };
 }
 
-/** Numbers derived from the axis that a field of the form belongs to. @param {State} state @param {string} path */
+/** The derived values of the axis of a field in the form. @param {State} state @param {string} path */
 export function derivedAxis({ derived }, path) {
   const additional = /^controllers\[(\d+)\]/.exec(path);
   const axis = /axes\[(\d+)\]/.exec(path);
@@ -28,7 +28,7 @@ export function isFiltering({ text, kind, address, outcome }) {
   return text.trim() !== "" || kind !== "" || address !== null || outcome !== "";
 }
 
-/** Why nothing runs, if so. @param {State} state @returns {"unvalidated" | "problems" | "budget" | null} */
+/** Why the scenario does not run; null if it can run. @param {State} state @returns {"unvalidated" | "problems" | "budget" | null} */
 export function blockedBy(state) {
   if (Object.keys(state.drafts).length > 0) return "problems";
   if (state.validated !== state.revision || !state.validation) return "unvalidated";

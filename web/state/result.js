@@ -1,11 +1,11 @@
-/** How validations and results of runs change the state. */
+/** Changes of the state by validations and results of runs. */
 import { MAX_CHANNELS } from "./limits.js";
 import { selected } from "./queries.js";
 import { clamp, endOf, requestedWindow } from "./time_window.js";
 
 /** @typedef {import("./types.js").State} State */
 
-/** Revision of the result that an earlier visit left, shown while the form has problems. */
+/** Revision of the last valid run of an earlier visit, shown while the form has problems. */
 export const EARLIER = -1;
 
 /** @param {State} state @param {{revision: number, validation: import("./types.js").Validation}} message @returns {State} */
@@ -23,14 +23,14 @@ export function done(state, { revision, summary, ms }) {
   const derived = earlier ? null : (state.validation?.derived ?? null);
   const result = { revision, summary, ms, controller: 0, derived };
   const next = selectController({ ...state, result, run }, state.controller);
-  // An old window over a run of another length or clock would show another time.
+  // With another clock, a window or cursor would be at another time.
   const same = state.result?.summary.clock_hz === summary.clock_hz;
   const inside = (/** @type {number | null} */ cycle) =>
     cycle !== null && cycle <= summary.end_cycle && same ? cycle : null;
-  const here = {
+  const updated = {
     ...next,
     window: state.window && same ? clamp(state.window, summary.end_cycle) : null,
-    seen: state.seen && { ...state.seen, verdict: null },
+    sender: state.sender && { ...state.sender, comparison: null },
     picked: null,
     zooms: same ? state.zooms : [],
     gesture: null,
@@ -38,22 +38,22 @@ export function done(state, { revision, summary, ms }) {
     markers: state.markers.map(inside),
     highlighted: null,
   };
-  return state.awaited ? showView(here, state.awaited) : here;
+  return state.pendingView ? showView(updated, state.pendingView) : updated;
 }
 
-/** Shows a link's view at once, or when its result is there. @param {State} state @param {import("./types.js").ViewPart} view @returns {State} */
+/** Shows the view of a link, or stores it until there is a result. @param {State} state @param {import("./types.js").ViewPart} view @returns {State} */
 export function openView(state, view) {
-  return state.result?.revision === state.revision ? showView(state, view) : { ...state, awaited: view };
+  return state.result?.revision === state.revision ? showView(state, view) : { ...state, pendingView: view };
 }
 
-/** Shows a link's view as far as the run has it. @param {State} state @param {import("./types.js").ViewPart} view @returns {State} */
+/** Shows the view of a link as far as the run allows. @param {State} state @param {import("./types.js").ViewPart} view @returns {State} */
 function showView(state, view) {
   const last = endOf(state);
   const inside = (/** @type {number | undefined} */ cycle) => (cycle !== undefined && cycle <= last ? cycle : null);
   const next = selectController(state, view.controller ?? 0);
   return {
     ...next,
-    awaited: null,
+    pendingView: null,
     window: view.window ? requestedWindow(view.window, last) : null,
     cursors: { a: inside(view.a), b: inside(view.b) },
     axis: Math.min(view.axis ?? 0, (selected(next)?.channels ?? 1) - 1),
@@ -64,7 +64,7 @@ function showView(state, view) {
   };
 }
 
-/** The result as another of its controllers shows it: a new object, so that all views draw it. @param {State} state @param {number} controller @returns {State} */
+/** Selects a controller. The result becomes a new object, so that all views redraw. @param {State} state @param {number} controller @returns {State} */
 export function selectController(state, controller) {
   if (!state.result) return { ...state, controller };
   const { controllers } = state.result.summary;

@@ -1,9 +1,9 @@
 /** Settings of the rows of the pulses: height, and order, visibility and name of each group (a channel, a line signal, the ticks). */
 
-/** @typedef {{px: number | null, order: string[], hidden: string[], names: {[group: string]: string}}} RowChoices  Height in CSS pixels, null as it is at first; groups that are not in `order` come after those that are. */
+/** @typedef {{px: number | null, order: string[], hidden: string[], names: {[group: string]: string}}} RowChoices  Height in CSS pixels, null for the default; groups that are not in `order` come last. */
 
 /** @type {RowChoices} */
-export const AS_THEY_ARE = { px: null, order: [], hidden: [], names: {} };
+export const DEFAULT_ROWS = { px: null, order: [], hidden: [], names: {} };
 /** Default, minimum and maximum height of a row, in CSS pixels. */
 export const ROW_PX = 19;
 export const MIN_PX = 16;

@@ -17,7 +17,7 @@ export function shown(state) {
   return state.window ?? { start: 0, end: endOf(state) };
 }
 
-/** The cycle to read values at: under the pointer, else at a cursor that is in sight. @param {State} state */
+/** The cycle of the readings: under the pointer, else at a visible cursor. @param {State} state */
 export function readingCycle(state) {
   const { start, end } = shown(state);
   const { a, b } = state.cursors;
@@ -26,19 +26,19 @@ export function readingCycle(state) {
 
 /** Keeps a window inside the run and at least a few cycles long. @param {Span} window @param {number} last @returns {Span | null} */
 export function clamp({ start, end }, last) {
-  const most = Math.max(MIN_SPAN, last);
-  const span = Math.min(most, Math.max(MIN_SPAN, Math.round(end - start)));
-  const from = Math.min(Math.max(0, Math.round(start)), most - span);
+  const length = Math.max(MIN_SPAN, last);
+  const span = Math.min(length, Math.max(MIN_SPAN, Math.round(end - start)));
+  const from = Math.min(Math.max(0, Math.round(start)), length - span);
   return Number.isFinite(from + span) ? { start: from, end: from + span } : null;
 }
 
-/** The window that a link requests; null where it does not lie in the run or is all of it. @param {Span} window @param {number} last @returns {Span | null} */
+/** The window that a link requests; null if it exceeds the run or is the whole run. @param {Span} window @param {number} last @returns {Span | null} */
 export function requestedWindow(window, last) {
   const inside = window.end <= last && window.end - window.start < last;
   return inside ? clamp(window, last) : null;
 }
 
-/** Shows another part of the time axis; the moves of one gesture are one step back. @param {State} state @param {{window: Span | null, joins?: string}} message @returns {State} */
+/** Shows another part of the time axis. All moves of one gesture are one step of `zooms`. @param {State} state @param {{window: Span | null, joins?: string}} message @returns {State} */
 export function moveTo(state, { window: wanted, joins }) {
   const window = wanted && clamp(wanted, endOf(state));
   const gesture = joins ?? null;

@@ -1,7 +1,7 @@
 /**
  * Types that modules of the page share. `core/scenario/src/schema` defines scenarios.
  *
- * @typedef {{[key: string]: any}} Scenario  Full JSON of one experiment, every field written.
+ * @typedef {{[key: string]: any}} Scenario  The JSON of an experiment, with all fields.
  * @typedef {{path: string, message: string}} Problem
  * @typedef {{start_s: number, duration_s: number, steps: number, detail: string, warning: string}} DerivedMove
  * @typedef {{steps: number, duration_s: number, peak_speed_steps_s: number, peak_acceleration_steps_s2: number,
@@ -34,16 +34,16 @@
  * @typedef {{start: number, end: number, texts: string[], bad: boolean, packet: number | null, sample: number | null}} LineSpan
  * @typedef {{bits: LineSpan[], bytes: LineSpan[], fields: LineSpan[]}} Lane
  * @typedef {{rx: Lane, tx: Lane, more: boolean}} Decoded
- * @typedef {{high: boolean, begin: number | null, end: number | null, next: number | null}} Pulse  A level and the edges around it, cycles.
+ * @typedef {{high: boolean, begin: number | null, end: number | null, next: number | null}} Pulse  A level, its first and last edge, and the next edge, in cycles.
  * @typedef {{cycle: number, bit: number, high: boolean}} EdgeRow
  * @typedef {{index: number, kind: "packet" | "frame" | "reply" | "collision", start_cycle: number, end_cycle: number,
  *   line_end_cycle: number, start: string, gap: string, hex: string, fields: string, outcome: string, short: string, why: string,
  *   mark: "good" | "foreign" | "repeated" | "bad", tick_start_cycle: number | null, tick_end_cycle: number | null,
- *   position: number, rank: number | null}} PacketRow  Position among the visible rows, rank among those that the search finds: of the table alone.
+ *   position: number, rank: number | null}} PacketRow  `position`: among the visible rows; `rank`: among the matches of the search.
  * @typedef {PacketRow & {layout: {name: string, from: number, until: number, value: string}[],
  *   check: "none" | "missing" | "holds" | "fails", check_found: string | null, check_expected: string | null,
  *   byte_cycles: number[], byte_length: number, gap_cycles: number | null, drive_cycles: number | null,
- *   turnaround_cycles: number | null, answers: number | null}} PacketDetail  The layout: each field with its first byte and the one after its last.
+ *   turnaround_cycles: number | null, answers: number | null}} PacketDetail  `layout`: the fields, each with its range of bytes `from..until`.
  * @typedef {{start_cycle: number, end_cycle: number, row: number | null, fields: string}} TickRow
  * @typedef {{total: number, shown: number, matches: number, unit: string, rows: PacketRow[]}} PacketPage
  * @typedef {{cycle: number, channel: number, rule: string, measured_cycles: number, required_cycles: number}} Violation
@@ -55,9 +55,9 @@
  *   thd_position: number | null, thd_speed: number | null, thd_acceleration: number | null, thd_acceleration_filtered: number | null}} Spectrum
  * @typedef {{axis: number, ideal: Spectrum | null, pulses: Spectrum | null, note: string}} Spectra
  *
- * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration; the last of pulses only where no plan is known, NaN at a cursor where it is not.
+ * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration. Pulses have an acceleration only without a plan; NaN where it is undefined.
  * @typedef {{ideal: Readings | null, actual: Readings}} Between
- * @typedef {{common_s: number, largest: number, at_s: number, rms: number}} Apart
+ * @typedef {{common_s: number, largest: number, at_s: number, rms: number}} Deviation  From the baseline.
  * @typedef {{title: string, revision: number, summary: Summary, controller: number, derived: DerivedController | null}} Baseline
  *
  * @typedef {{start: number, end: number}} Span  Cycles, start < end.
@@ -65,19 +65,19 @@
  * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the visible scenario comes from.
  * @typedef {{title: boolean, note: boolean}} Borrowed  Whether name and note are still those of the preset, link or file.
  * @typedef {{scenario: Scenario, origin: Origin, borrowed: Borrowed}} Moment  One step of the history.
- * @typedef {{revision: number, summary: Summary, ms: number, controller: number, derived: Derived | null}} Result  As one of its controllers shows it, and what followed from its scenario.
+ * @typedef {{revision: number, summary: Summary, ms: number, controller: number, derived: Derived | null}} Result  The result of a run, with the visible controller and the derived values of its scenario.
  * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
  *
  * @typedef {{form: number | null, rows: number[] | null, columns: number[] | null, folded: string[], open: string[],
  *   largest: string | null, pulses: import("./row_choices.js").RowChoices}} Panes
- *   Width of the form in CSS pixels, 0 where it is folded; parts of the views' height and width; null: as the views' list has it;
- *   views that are folded, and those that are unfolded although they have nothing to show; the rows of the pulses, on any screen.
- * @typedef {{start: number, end: number, controller: number, cycle: number}} Place  A time that a message can show, in cycles.
- * @typedef {{edge: number, cycle: number}} Mark
+ *   `form`: its width in CSS pixels, 0 if folded. `rows` and `columns`: relative heights and widths of the views. null is the
+ *   default. `folded` views; views `open` although they are empty; the `largest` view; and the rows of the pulses.
+ * @typedef {{start: number, end: number, controller: number, cycle: number}} TraceLocation  The window and the cycle that a message links to, in cycles.
+ * @typedef {{edge: number, cycle: number}} Mark  An edge by its number, and its cycle.
  * @typedef {{error: string | null, same: boolean, edges: number, version: string | null, own_version: string, controller: number,
- *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} Verdict  How a run stands to a link's sender's.
+ *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} SenderComparison  Comparison of a run with that of the sender of the link.
  * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, sides?: {[area: string]: string},
- *   unit?: "steps" | "mm" | "deg", study?: StudyName}} ViewPart  What a link says of the view; what it leaves out is as on a fresh page.
+ *   unit?: "steps" | "mm" | "deg", study?: StudyName}} ViewPart  The view in a link; missing parts have their defaults.
  *
  * @typedef {"compare" | "measures" | "tables" | "sine" | "torque" | "motor"} StudyName  Tabs of the study.
  *
@@ -86,45 +86,45 @@
  * @property {Origin} origin
  * @property {Borrowed} borrowed
  * @property {number} revision      Counts the changes of the scenario.
- * @property {string | null} edited Path of the last edit, while further edits of it join that step of the history.
+ * @property {string | null} edited Path of the last edit, while more edits of it join the same step of undo.
  * @property {Moment[]} past
  * @property {Moment[]} future
- * @property {{[path: string]: {text: string, message: string}}} drafts  Texts that are no number yet.
- * @property {Validation | null} validation  Of `validated`.
- * @property {number} validated        Revision that `validation` is about.
- * @property {Derived | null} derived  The last that there was.
- * @property {number} approved      Revision that the user lets run although it is over the budget.
+ * @property {{[path: string]: {text: string, message: string}}} drafts  Invalid texts of fields, by path.
+ * @property {Validation | null} validation  Validation of the revision `validated`.
+ * @property {number} validated        Revision of `validation`.
+ * @property {Derived | null} derived  Derived values of the last valid scenario.
+ * @property {number} approved      Revision that the user allowed to run although it exceeds the budget.
  * @property {Run} run
- * @property {Result | null} result The last good one.
- * @property {number} controller    The one that the views look at, as long as there is one of this number.
+ * @property {Result | null} result The last valid result.
+ * @property {number} controller    Selected controller, if it exists.
  * @property {Span | null} window   Shown part of the time axis; null shows the whole run.
- * @property {(Span | null)[]} zooms  What was shown before, the last one last.
- * @property {string | null} gesture  The gesture that moves the window; what it moves on joins one step of `zooms`.
- * @property {boolean} box          Dragging on the time axis zooms to what it spans.
- * @property {Span | null} picked   What such a drag spans so far.
+ * @property {(Span | null)[]} zooms  Previous windows, the latest last.
+ * @property {string | null} gesture  The gesture that moves the window; all its movements are one step of `zooms`.
+ * @property {boolean} box          Whether dragging on the time axis draws a zoom box.
+ * @property {Span | null} picked   The current zoom box.
  * @property {Baseline | null} baseline  The run that others are compared with.
- * @property {number | null} harmonic  Number of the harmonic that is pointed at.
- * @property {boolean} difference   The position's chart shows the difference to it.
- * @property {ViewPart | null} awaited  What a link asks to be shown, until there is a result to show it of.
- * @property {{text: string, verdict: Verdict | null} | null} seen  The run that a link's sender saw (its part `d`), and how this one stands to it.
+ * @property {number | null} harmonic  Number of the selected harmonic.
+ * @property {boolean} difference   Whether the position chart shows the difference from the baseline.
+ * @property {ViewPart | null} pendingView  The view of a link, until there is a result.
+ * @property {{text: string, comparison: SenderComparison | null} | null} sender  The digests of the sender's run (part `d` of the link), and the comparison with them.
  * @property {number} axis          Axis of the motion view.
  * @property {"steps" | "mm" | "deg"} unit  Unit of the motion view.
  * @property {number | null} hover  Cycle under the pointer.
- * @property {{start: number, end: number, from: string, packet: number | null, bit: number | null} | null} highlighted  What is pointed at, in cycles: a packet, a part of it, an edge, a bit of the line. All views light it up. `from` is the view that says so.
+ * @property {{start: number, end: number, from: string, packet: number | null, bit: number | null} | null} highlighted  A packet, a part of it, an edge or a bit of the line, in cycles, which all views highlight. `from` is the view under the pointer.
  * @property {(number | null)[]} markers  Cycles of the markers 0 to 9.
  * @property {{a: number | null, b: number | null}} cursors  Cycles.
- * @property {number} row           Signal bit whose edges are looked for.
- * @property {{[channel: number]: boolean}} folds  Channels that the user folded or unfolded, and by their bits the decoders of RX and TX.
- * @property {boolean} allSignals   Also the signals that never change.
+ * @property {number} row           Bit of the selected signal.
+ * @property {{[channel: number]: boolean}} folds  Whether the user folded a channel, or, by bit, the decoders of RX or TX.
+ * @property {boolean} allSignals   Whether signals that never change are shown, too.
  * @property {number | null} packet Selected packet.
- * @property {{text: string, kind: string, address: number | null, outcome: string, only: boolean}} filter  Of the packets: what is searched for, and which rows are shown; `only` leaves out what the search does not find.
- * @property {string} view          Tab on a narrow screen; "study" takes the place of all views on a wide one, too.
+ * @property {{text: string, kind: string, address: number | null, outcome: string, only: boolean}} filter  Search text and filters of the packets; `only` hides rows without a match.
+ * @property {string} view          Tab on a narrow screen; "study" replaces all views, also on a wide one.
  * @property {StudyName} study      Open tab of the study.
- * @property {Panes} panes          What this device keeps of how the views stand.
- * @property {string[]} bare        Views that have nothing to show of this run but a line.
- * @property {{[area: string]: string}} sides  Which of the views that share a place on a wide screen is visible, where one was selected.
- * @property {{text: string, kind: "info" | "error", place?: Place | null, offer?: {label: string, scenario: Scenario}} | null} notice  About links, files and the engine.
+ * @property {Panes} panes          Layout of the views, saved on this device.
+ * @property {string[]} emptyViews  Views without content for this run.
+ * @property {{[area: string]: string}} sides  The selected view of each shared area of a wide screen.
+ * @property {{text: string, kind: "info" | "error", location?: TraceLocation | null, offer?: {label: string, scenario: Scenario}} | null} notice  About links, files and the engine.
  *
- * @typedef {{dispatch: (message: import("./message.js").Message) => void, now: () => State}} Page  What each part of the page is given.
+ * @typedef {{dispatch: (message: import("./message.js").Message) => void, now: () => State}} Page  The state and how to change it.
  */
 export {};

@@ -56,11 +56,11 @@ export function update(state, message) {
       return { ...state, difference: message.on };
     case "open":
       return openView(state, message.view);
-    case "seen":
-      return { ...state, seen: { text: message.text, verdict: null } };
+    case "sender":
+      return { ...state, sender: { text: message.text, comparison: null } };
     case "compared":
-      return state.seen?.text === message.text
-        ? { ...state, seen: { ...state.seen, verdict: message.verdict } }
+      return state.sender?.text === message.text
+        ? { ...state, sender: { ...state.sender, comparison: message.comparison } }
         : state;
     case "hover":
       return state.hover === message.cycle ? state : { ...state, hover: message.cycle };
@@ -96,10 +96,11 @@ export function update(state, message) {
       return { ...state, unit: message.unit };
     case "pane":
       return { ...state, panes: { ...state.panes, ...message.panes } };
-    case "bare": {
-      const { view, bare } = message;
-      if (state.bare.includes(view) === bare) return state;
-      return { ...state, bare: bare ? [...state.bare, view] : state.bare.filter((each) => each !== view) };
+    case "empty": {
+      const { view, isEmpty } = message;
+      if (state.emptyViews.includes(view) === isEmpty) return state;
+      const others = state.emptyViews.filter((each) => each !== view);
+      return { ...state, emptyViews: isEmpty ? [...others, view] : others };
     }
     case "rows":
       return { ...state, panes: { ...state.panes, pulses: { ...state.panes.pulses, ...message.rows } } };

@@ -8,23 +8,23 @@
 /** @typedef {import("./types.js").State} State */
 /**
  * @typedef {object} View
- * @property {string} name   As links, tabs and ids have it (`view-motion`). Published in links: it stays.
+ * @property {string} name   Its name in ids (`view-motion`) and links. Never changes.
  * @property {string} title  Its heading.
- * @property {string} [tab]  Its tab, where that is shorter.
- * @property {string} about  What the card behind its heading says first; what its words mean stands in `help/texts.js`.
- * @property {Place | null} place  On a wide screen; null stands alone.
- * @property {(state: State) => boolean} [offered]  Whether there is such a view now; always without it.
- * @property {(state: State) => boolean} [leads]  Whether it has its place where none was selected; else the first has it.
+ * @property {string} [tab]  A shorter title for its tab.
+ * @property {string} about  First sentence of its help card; help/term_texts.js has its terms.
+ * @property {Place | null} place  Its area on a wide screen; null fills the screen.
+ * @property {(state: State) => boolean} [offered]  Whether the view is available; default: always.
+ * @property {(state: State) => boolean} [isDefault]  Whether it is shown in its area if the user selected none; otherwise the first one is.
  *
  * @typedef {object} Place
- * @property {string} area  Name of the place; views of one name share it.
+ * @property {string} area  Name of the area; views of one area share it.
  * @property {number} band  From the top, 0 the first.
- * @property {string} [height]  Of the band, of its first view: at most so much, but what it holds has its room. Without it just that.
- * @property {number} part  Of the room of all, in which an edge that is moved leaves the others: of the height, or of the width beside others.
- * @property {number} least_px  Least height that an edge can be moved to.
+ * @property {string} [height]  Maximum height of the band, at its first view. Without it the band fits its content.
+ * @property {number} share  Default share of the height of all bands, or of the width of a band with several columns.
+ * @property {number} min_px  Minimum height.
  */
 
-/** Whether stand-alone controllers run it. @param {State} state */
+/** Whether the scenario has stand-alone controllers. @param {State} state */
 export function hasPanel({ scenario }) {
   return Boolean(scenario.source?.standalone);
 }
@@ -34,50 +34,50 @@ const ROWS = /** @type {const} */ ([
     name: "motion",
     title: "Motion",
     about: "Position, speed and acceleration of one axis.",
-    place: { area: "motion", band: 0, height: "1fr", part: 0.47, least_px: 120 },
+    place: { area: "motion", band: 0, height: "1fr", share: 0.47, min_px: 120 },
   },
   {
     name: "panel",
     title: "Panel",
     about: "Front panel of a stand-alone controller: display, presses, switches and power over time.",
-    place: { area: "motion", band: 0, part: 0.47, least_px: 120 },
+    place: { area: "motion", band: 0, share: 0.47, min_px: 120 },
     offered: hasPanel,
-    leads: hasPanel,
+    isDefault: hasPanel,
   },
   {
     name: "motor",
     title: "Motor",
     about: "Simulated motor: rotor position, currents and lost steps.",
-    place: { area: "motion", band: 0, part: 0.47, least_px: 120 },
-    leads: (/** @type {State} */ state) => Boolean(state.scenario.plant),
+    place: { area: "motion", band: 0, share: 0.47, min_px: 120 },
+    isDefault: (/** @type {State} */ state) => Boolean(state.scenario.plant),
   },
   {
     name: "pulses",
     title: "Pulses",
     about: "All signals between controller, drivers and line, cycle-exact.",
-    place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 110px, 40%)", part: 0.26, least_px: 110 },
+    place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 110px, 40%)", share: 0.26, min_px: 110 },
   },
   {
     name: "packets",
     title: "Packets",
     about: "Packets on the line and their outcomes.",
-    place: { area: "packets", band: 2, height: "27%", part: 6 / 11, least_px: 110 },
+    place: { area: "packets", band: 2, height: "27%", share: 6 / 11, min_px: 110 },
   },
   {
     name: "spectrum",
     title: "Spectrum",
     about: "Frequencies and distortion of the motion.",
-    place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
+    place: { area: "spectrum", band: 2, share: 5 / 11, min_px: 110 },
   },
   {
     name: "timing",
     title: "Driver timing",
     tab: "Timing",
     about: "Pulses checked against each rule of the driver data sheet.",
-    place: { area: "spectrum", band: 2, part: 5 / 11, least_px: 110 },
+    place: { area: "spectrum", band: 2, share: 5 / 11, min_px: 110 },
     offered: (/** @type {State} */ { result }) =>
       typeof result?.summary.controllers[result.controller]?.violations === "number",
-    leads: () => true,
+    isDefault: () => true,
   },
   {
     name: "study",
@@ -93,9 +93,9 @@ const ROWS = /** @type {const} */ ([
 /** @type {readonly View[]} */
 export const VIEWS = ROWS;
 export const NAMES = VIEWS.map(({ name }) => name);
-/** Views with a place on a wide screen. */
+/** Views with an area on a wide screen. */
 export const PLACED = /** @type {Placed[]} */ (VIEWS.filter(({ place }) => place !== null));
-/** Views by shared place. */
+/** Views that share an area, by area. */
 export const SHARED = new Map(
   PLACED.map(({ place: { area } }) => [area, PLACED.filter(({ place }) => place.area === area)]),
 );
@@ -107,18 +107,18 @@ export function isOffered({ offered }, state) {
 }
 
 /**
- * The visible view in the place of one: that which was selected, else that which leads there, else the first.
+ * The visible view of an area. Order:  that which was selected, else that which isDefault there, else the first.
  * @param {State} state @param {string} area
  */
-export function inPlace(state, area) {
+export function visibleViewOf(state, area) {
   const here = PLACED.filter((view) => view.place.area === area && isOffered(view, state));
   const selected = here.find(({ name }) => name === state.sides[area]);
-  const found = selected ?? here.find(({ leads }) => leads?.(state)) ?? here[0];
+  const found = selected ?? here.find(({ isDefault }) => isDefault?.(state)) ?? here[0];
   return found.name;
 }
 
-/** The open tab of a narrow screen: that which was selected, or what has its place if there is none. @param {State} state */
+/** The open tab of a narrow screen: the selected view, or the visible one of its area if it is not available. @param {State} state */
 export function openTab(state) {
   const selected = VIEWS.find(({ name }) => name === state.view) ?? VIEWS[0];
-  return isOffered(selected, state) || !selected.place ? selected.name : inPlace(state, selected.place.area);
+  return isOffered(selected, state) || !selected.place ? selected.name : visibleViewOf(state, selected.place.area);
 }

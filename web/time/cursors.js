@@ -5,7 +5,7 @@ import { pixelOf } from "./timeline.js";
 /** @typedef {import("../state/types.js").State} State */
 
 /**
- * What is highlighted in all views, the pointer's line, those of the cursors A and B, and of the markers.
+ * Draws the highlight, the zoom box, and the lines of pointer, cursors and markers.
  * @param {CanvasRenderingContext2D} context
  * @param {State} state
  * @param {{left: number, right: number}} plot
@@ -47,8 +47,8 @@ export function drawCursors(context, state, plot, height) {
   line(state.cursors.b, "--cursor-b", [5, 3], 1.5);
 }
 
-/** Whether they have changed. @param {State | undefined} before @param {State} state */
-export function overlaid(before, state) {
+/** Whether the highlight, the pointer, the cursors, the markers or the zoom box have changed. @param {State | undefined} before @param {State} state */
+export function hasOverlayChanged(before, state) {
   return (
     before?.hover !== state.hover ||
     before?.highlighted !== state.highlighted ||

@@ -2,13 +2,13 @@
 
 /** @typedef {import("../state/types.js").Span} Span */
 /**
- * @typedef {object} Axis  What the gestures move.
+ * @typedef {object} Axis  The axis that the gestures move.
  * @property {() => Span} shown
- * @property {(window: Span | null, joins?: string) => void} show  Another part, null for all; what one gesture shows joins one step back.
- * @property {() => boolean} boxing  Dragging draws a box.
- * @property {() => Span | null} picked  What the box spans so far.
+ * @property {(window: Span | null, joins?: string) => void} show  Shows a part of the axis, null for all. Calls with the same `joins` are one step back.
+ * @property {() => boolean} boxing  Whether dragging draws a zoom box.
+ * @property {() => Span | null} picked  The current zoom box.
  * @property {(span: Span | null) => void} pick
- * @property {(at: number | null) => void} hover  The place under the pointer; null where it is beside the plotting area.
+ * @property {(at: number | null) => void} hover  The position under the pointer; null outside of the plotting area.
  * @property {(event: PointerEvent, at: number) => void} click
  */
 
@@ -17,14 +17,14 @@ const WHEEL_MS = 600;
 /** A press that moves less than this many CSS pixels is a click. */
 const CLICK_PX = 4;
 
-/** @param {Span} window @param {number} factor @param {number} [at]  Place that stays; the middle without it. @returns {Span} */
+/** @param {Span} window @param {number} factor @param {number} [at]  Position that stays; default: the middle. @returns {Span} */
 export function zoomed({ start, end }, factor, at = (start + end) / 2) {
   return { start: at - (at - start) * factor, end: at + (end - at) * factor };
 }
 
-/** Moved by a part of itself. @param {Span} window @param {number} part @returns {Span} */
-export function moved({ start, end }, part) {
-  const by = (end - start) * part;
+/** A window moved by a fraction of its length. @param {Span} window @param {number} fraction @returns {Span} */
+export function moved({ start, end }, fraction) {
+  const by = (end - start) * fraction;
   return { start: start + by, end: end + by };
 }
 
@@ -43,10 +43,11 @@ export function gestures(target, plot, axis) {
   const pointers = new Map();
   /** @type {{window: Span, x: number, spread: number, moved: boolean, box: boolean, gesture: string} | null} */
   let drag = null;
-  let gestures = 0;
-  let turned = -Infinity;
-  /** The last press was a box. */
-  let boxed = false;
+  let gestureCount = 0;
+  /** Time of the last wheel event. */
+  let lastWheel = -Infinity;
+  /** Whether the last press drew a box. */
+  let hasDrawnBox = false;
   const at = (/** @type {number} */ x) => valueAt(axis.shown(), plot(), x);
   const xOf = (/** @type {{clientX: number}} */ event) => event.clientX - target.getBoundingClientRect().left;
 
@@ -59,7 +60,7 @@ export function gestures(target, plot, axis) {
       spread: Math.abs(points[0].x - (points[1]?.x ?? 0)),
       moved: drag?.moved ?? false,
       box: false,
-      gesture: drag?.gesture ?? `${target.id} ${++gestures}`,
+      gesture: drag?.gesture ?? `${target.id} ${++gestureCount}`,
     };
   }
 
@@ -67,14 +68,14 @@ export function gestures(target, plot, axis) {
     "wheel",
     (event) => {
       if (event.ctrlKey && event.deltaMode !== 0) return;
-      // Beside the plotting area the wheel scrolls the rows.
+      // Left of the plotting area the wheel scrolls the rows.
       if (xOf(event) < plot().left && !event.ctrlKey) return;
       event.preventDefault();
       const sideways = event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY);
       const delta = (event.deltaX || event.deltaY) * (event.deltaMode === 1 ? 20 : 1);
-      if (event.timeStamp - turned > WHEEL_MS) gestures += 1;
-      turned = event.timeStamp;
-      const joins = `${target.id} wheel ${gestures}`;
+      if (event.timeStamp - lastWheel > WHEEL_MS) gestureCount += 1;
+      lastWheel = event.timeStamp;
+      const joins = `${target.id} wheel ${gestureCount}`;
       const factor = Math.exp(Math.max(-1, Math.min(1, event.deltaY * (event.deltaMode === 1 ? 0.05 : 0.002))));
       const window = axis.shown();
       axis.show(sideways ? moved(window, delta / 800) : zoomed(window, factor, at(xOf(event))), joins);
@@ -88,14 +89,14 @@ export function gestures(target, plot, axis) {
     if (pointers.size === 1) drag = null;
     if (pointers.size > 1 && axis.picked()) axis.pick(null);
     begin();
-    // Also a press that leaves the element before it is a drag ends here.
+    // So that the release is reported even outside of the element.
     target.setPointerCapture(event.pointerId);
     if (drag && pointers.size === 1)
       drag.box = (axis.boxing() || event.shiftKey || event.button === 2) && xOf(event) >= plot().left;
   });
-  // The right button's drag is a box; a press of it alone is still the browser's menu.
+  // Dragging with the right button draws a box; a click still opens the menu of the browser.
   target.addEventListener("contextmenu", (event) => {
-    if (drag?.moved || boxed) event.preventDefault();
+    if (drag?.moved || hasDrawnBox) event.preventDefault();
   });
 
   target.addEventListener("pointermove", (event) => {
@@ -131,7 +132,7 @@ export function gestures(target, plot, axis) {
   function lift(event) {
     if (!pointers.delete(event.pointerId)) return;
     const picked = axis.picked();
-    boxed = drag?.box === true && picked !== null;
+    hasDrawnBox = drag?.box === true && picked !== null;
     if (drag?.box && picked) {
       axis.pick(null);
       if (event.type === "pointerup" && picked.end > picked.start) axis.show(picked);

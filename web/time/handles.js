@@ -3,7 +3,7 @@
  * the left edge.
  */
 import { element, fill } from "../dom.js";
-import { listen } from "../shell/commands.js";
+import { registerCommands } from "../shell/commands.js";
 import { exactTime } from "../state/number.js";
 import { endOf, shown } from "../state/time_window.js";
 import { cycleAt, middleOf, nudge, pixelOf } from "./timeline.js";
@@ -13,15 +13,15 @@ import { cycleAt, middleOf, nudge, pixelOf } from "./timeline.js";
 
 /** A press that moves less than this many CSS pixels is a click. */
 const CLICK_PX = 4;
-/** Distance left of the plotting area at which a cursor is removed. */
-const LET_GO_PX = 14;
-/** Columns of a fast move. */
+/** A cursor that is dragged this far left of the plotting area is removed, in CSS pixels. */
+const REMOVE_PX = 14;
+/** Columns of pixels of a fast movement. */
 const FAST = 10;
 
 /**
  * @param {HTMLElement} strip
  * @param {() => {left: number, right: number}} plot  Plotting area in the strip's CSS pixels.
- * @param {Page & {settle?: (cycle: number) => Promise<number>}} page  `settle` says where a cursor that was let go there comes to stand.
+ * @param {Page & {snap?: (cycle: number) => Promise<number>}} page  `snap` returns the cycle to which a released cursor moves.
  */
 export function createHandles(strip, plot, page) {
   const { dispatch, now } = page;
@@ -47,11 +47,11 @@ export function createHandles(strip, plot, page) {
       element("span", {}, name),
     );
     const move = (/** @type {number | null} */ cycle) => dispatch({ type: "cursor", which, cycle });
-    /** Where the press began, how far from the cursor's line, and whether it moved since. @type {{x: number, by: number, moved: boolean} | null} */
+    /** Start of the press, its distance from the line of the cursor, and whether it has moved. @type {{x: number, by: number, moved: boolean} | null} */
     let drag = null;
     const xOf = (/** @type {PointerEvent} */ event) => event.clientX - strip.getBoundingClientRect().left;
     const isParked = () => node.classList.contains("parked");
-    const place = () => {
+    const bringToCenter = () => {
       if (isParked()) move(middleOf(now()));
     };
 
@@ -72,7 +72,7 @@ export function createHandles(strip, plot, page) {
       const x = xOf(event) - drag.by;
       if (!drag.moved && Math.abs(xOf(event) - drag.x) < CLICK_PX) return;
       drag.moved = true;
-      const cycle = x < left - LET_GO_PX ? null : cycleAt(now(), plot(), Math.min(right, Math.max(left, x)));
+      const cycle = x < left - REMOVE_PX ? null : cycleAt(now(), plot(), Math.min(right, Math.max(left, x)));
       move(cycle);
       dispatch({ type: "hover", cycle });
     });
@@ -80,25 +80,25 @@ export function createHandles(strip, plot, page) {
       event.stopPropagation();
       const { moved = false } = drag ?? {};
       drag = null;
-      if (!moved) return place();
+      if (!moved) return bringToCenter();
       dispatch({ type: "hover", cycle: null });
       const cycle = now().cursors[which];
-      const settled = cycle === null ? null : await page.settle?.(cycle);
-      if (typeof settled === "number" && now().cursors[which] === cycle) move(settled);
+      const snapped = cycle === null ? null : await page.snap?.(cycle);
+      if (typeof snapped === "number" && now().cursors[which] === cycle) move(snapped);
     });
     node.addEventListener("pointercancel", () => {
       drag = null;
       dispatch({ type: "hover", cycle: null });
     });
     const by = (/** @type {number} */ columns) => () => nudge(page, plot(), which, columns);
-    listen(node, "Handle of a cursor", [
+    registerCommands(node, "Handle of a cursor", [
       { keys: ["ArrowLeft", "ArrowDown"], text: "move the cursor left", run: by(-1) },
       { keys: ["ArrowRight", "ArrowUp"], text: "move the cursor right", run: by(1) },
-      { keys: ["Shift+ArrowLeft", "PageDown"], text: "far to the left", run: by(-FAST) },
-      { keys: ["Shift+ArrowRight", "PageUp"], text: "far to the right", run: by(FAST) },
+      { keys: ["Shift+ArrowLeft", "PageDown"], text: "move it far to the left", run: by(-FAST) },
+      { keys: ["Shift+ArrowRight", "PageUp"], text: "move it far to the right", run: by(FAST) },
       { keys: ["Home"], text: "move to the start of the visible time", run: () => move(Math.ceil(shown(now()).start)) },
       { keys: ["End"], text: "move to its end", run: () => move(Math.floor(shown(now()).end)) },
-      { keys: ["Enter", "Space"], text: "bring it to the center if it is not visible", run: place },
+      { keys: ["Enter", "Space"], text: "bring it to the center if it is not visible", run: bringToCenter },
       { keys: ["Delete", "Backspace"], text: "remove it", run: () => move(null) },
     ]);
     return node;
@@ -112,7 +112,7 @@ export function createHandles(strip, plot, page) {
     for (const { which, node } of handles) {
       const cycle = state.cursors[which];
       const parked = cycle === null || cycle < start || cycle > end;
-      // The one that is earlier stands left of its line: so both can be taken where they meet.
+      // The handle of the earlier cursor is left of its line, so that both can be dragged when they are close.
       const left = which === "a" ? b === null || (a ?? 0) <= b : a !== null && (b ?? 0) < a;
       node.classList.toggle("parked", parked);
       node.classList.toggle("left", !parked && left);

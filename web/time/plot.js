@@ -28,7 +28,7 @@ export function ratio() {
 /**
  * Sizes a canvas to its box and clears it.
  * @param {HTMLCanvasElement} canvas
- * @param {number} [scale]  Device pixels to a CSS pixel.
+ * @param {number} [scale]  Device pixels per CSS pixel.
  * @returns {{width: number, height: number, ratio: number}}  CSS pixels.
  */
 export function fit(canvas, scale = ratio()) {
@@ -65,7 +65,7 @@ export function color(name) {
   return hex;
 }
 
-// The views hear of another theme after this module, and draw with its colours.
+// This listener is registered before those of the views, so they redraw with the new colors.
 document.addEventListener("themechange", () => known.clear());
 
 let family = "";
@@ -77,7 +77,7 @@ export function font() {
 }
 
 /**
- * A canvas that `fit` has sized, cleared to be drawn on anew: without asking for the layout, for what follows a pointer.
+ * Clears a canvas that `fit` has sized. It causes no layout, so it is fast enough to follow a pointer.
  * @param {HTMLCanvasElement} canvas
  */
 export function cleared(canvas) {
@@ -88,7 +88,7 @@ export function cleared(canvas) {
   return context && { context, height };
 }
 
-/** Width, scale and height as they were last fitted. @type {WeakMap<HTMLCanvasElement, [number, number, number]>} */
+/** Width, scale and height of each canvas from the last `fit`. @type {WeakMap<HTMLCanvasElement, [number, number, number]>} */
 const fitted = new WeakMap();
 
 /**
@@ -103,7 +103,7 @@ const fitted = new WeakMap();
  * Draws one chart.
  * @param {HTMLCanvasElement} canvas
  * @param {Chart} chart
- * @returns {Plot | null}  null where the canvas is not visible or the chart cannot be drawn.
+ * @returns {Plot | null}  null if the canvas is too small.
  */
 export function draw(canvas, chart) {
   const size = fit(canvas, CHART_RATIO);
@@ -132,7 +132,7 @@ export function picture(chart, width, height) {
   return canvas;
 }
 
-/** A chart as the text of an SVG element at a place. @param {Chart} chart @param {number} x @param {number} y @param {number} width @param {number} height */
+/** A chart as the text of an SVG element at a position. @param {Chart} chart @param {number} x @param {number} y @param {number} width @param {number} height */
 export function drawing(chart, x, y, width, height) {
   const [w, h] = [width * CHART_RATIO, height * CHART_RATIO];
   const inner = chart_svg(w, h, spec(chart)).replace(/^[\s\S]*?<svg[^>]*>/, "");

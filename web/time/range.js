@@ -1,5 +1,5 @@
 /** Fields and buttons of the visible time. */
-import { byId, say } from "../dom.js";
+import { byId, setText } from "../dom.js";
 import { time } from "../state/number.js";
 import { parseNumber } from "../state/parse_number.js";
 import { endOf, shown } from "../state/time_window.js";
@@ -10,7 +10,7 @@ import { zoom } from "./timeline.js";
 /** @param {import("../state/types.js").Page} page */
 export function createRange({ dispatch, now }) {
   const page = { dispatch, now };
-  // Besides these, any view may have buttons of its own for the same.
+  // Other views may have such buttons, too.
   for (const press of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-time]"))) {
     const run = {
       in: () => byId("zoom-in").click(),
@@ -35,20 +35,21 @@ export function createRange({ dispatch, now }) {
       input.setAttribute("aria-invalid", String("message" in read));
       return read;
     });
-    const wrong = "message" in start ? start.message : "message" in end ? end.message : "";
-    if (wrong || "message" in start || "message" in end) return say(byId("window-error"), wrong);
+    const error = "message" in start ? start.message : "message" in end ? end.message : "";
+    if (error || "message" in start || "message" in end) return setText(byId("window-error"), error);
     const last = endOf(state) / clockHz;
-    if (start.value < 0) return say(byId("window-error"), "“from” is out of range; use 0 or more.");
-    if (start.value >= last) return say(byId("window-error"), `“from” is out of range; the run ends at ${time(last)}.`);
-    if (end.value <= start.value) return say(byId("window-error"), "“to” must be after “from”.");
-    say(byId("window-error"), "");
+    if (start.value < 0) return setText(byId("window-error"), "“from” is out of range; use 0 or more.");
+    if (start.value >= last)
+      return setText(byId("window-error"), `“from” is out of range; use less than ${time(last)}, the end of the run.`);
+    if (end.value <= start.value) return setText(byId("window-error"), "“to” is not after “from”; use a later time.");
+    setText(byId("window-error"), "");
     const inRun = (/** @type {number} */ s) => Math.min(Math.max(0, s * clockHz), endOf(state));
     dispatch({ type: "window", window: { start: inRun(start.value), end: inRun(end.value) } });
     fields(now(), true);
   }
 
-  /** @param {State} state @param {boolean} [all]  Also the one that has the focus: what it asked for is done. */
-  function fields(state, all = false) {
+  /** @param {State} state @param {boolean} [includesFocused]  Whether to update the focused field, too. */
+  function fields(state, includesFocused = false) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
     for (const [id, cycle] of /** @type {[string, number][]} */ ([
@@ -56,7 +57,7 @@ export function createRange({ dispatch, now }) {
       ["window-end", end],
     ])) {
       const input = /** @type {HTMLInputElement} */ (byId(id));
-      if (all || document.activeElement !== input) input.value = time(cycle / clock);
+      if (includesFocused || document.activeElement !== input) input.value = time(cycle / clock);
     }
   }
 
@@ -72,7 +73,7 @@ export function createRange({ dispatch, now }) {
     }
     if (before?.window === state.window && before?.result === state.result) return;
     fields(state);
-    say(byId("window-error"), "");
+    setText(byId("window-error"), "");
   }
   return { render };
 }

@@ -1,12 +1,12 @@
 /** The time axis that motion and pulses share: gestures, cursors and keys. */
-import { listen } from "../shell/commands.js";
+import { registerCommands } from "../shell/commands.js";
 import { endOf, shown } from "../state/time_window.js";
 import { gestures, moved, valueAt, zoomed } from "./gestures.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Span} Span */
 /** @typedef {import("../state/types.js").Page} Page */
-/** @typedef {(event: PointerEvent, cycle: number) => boolean | Promise<number>} Click  Whether it used the click, or the cycle to take instead. */
+/** @typedef {(event: PointerEvent, cycle: number) => boolean | Promise<number>} Click  Returns true if it used the click, or the cycle for the cursor. */
 
 const DIGITS = [..."0123456789"];
 
@@ -15,17 +15,17 @@ export function zoom({ dispatch, now }, factor, at, joins) {
   dispatch({ type: "window", joins, window: zoomed(shown(now()), factor, at) });
 }
 
-/** Moves the shown time by a part of itself. @param {Page} page @param {number} part @param {string} [joins] */
-export function pan({ dispatch, now }, part, joins) {
-  dispatch({ type: "window", joins, window: moved(shown(now()), part) });
+/** Moves the visible time by a fraction of its length. @param {Page} page @param {number} fraction @param {string} [joins] */
+export function pan({ dispatch, now }, fraction, joins) {
+  dispatch({ type: "window", joins, window: moved(shown(now()), fraction) });
 }
 
-/** Shows what lies between the cursors, with a little around it. @param {Page} page */
+/** Shows the time between the cursors with a margin. @param {Page} page */
 function zoomToCursors({ dispatch, now }) {
   const { a, b } = now().cursors;
   if (a === null || b === null || a === b) return;
-  const air = Math.abs(b - a) * 0.05;
-  dispatch({ type: "window", window: { start: Math.min(a, b) - air, end: Math.max(a, b) + air } });
+  const margin = Math.abs(b - a) * 0.05;
+  dispatch({ type: "window", window: { start: Math.min(a, b) - margin, end: Math.max(a, b) + margin } });
 }
 
 /** Brings a cycle into view, with the same zoom. @param {Page} page @param {number} cycle */
@@ -36,7 +36,7 @@ export function reveal({ dispatch, now }, cycle) {
   dispatch({ type: "window", window: { start: cycle - half, end: cycle + half } });
 }
 
-/** Brings a marker into the middle, with the same zoom; false where it is not set. @param {Page} page @param {number} digit */
+/** Centers a marker, with the same zoom; returns false if it is not set. @param {Page} page @param {number} digit */
 export function goToMarker({ dispatch, now }, digit) {
   const cycle = now().markers[digit];
   if (cycle === null) return false;
@@ -51,7 +51,7 @@ export function cycleAt(state, plot, x) {
   return inRun(state, valueAt(shown(state), plot, x));
 }
 
-/** The whole cycle of the run that is next. @param {State} state @param {number} cycle */
+/** The nearest whole cycle within the run. @param {State} state @param {number} cycle */
 function inRun(state, cycle) {
   return Math.min(endOf(state), Math.max(0, Math.round(cycle)));
 }
@@ -89,16 +89,16 @@ export function onTimeAxis(target, plot, page) {
       dispatch({ type: "cursor", which: event.shiftKey ? "b" : "a", cycle: used === false ? cycle : await used });
     },
   });
-  listen(target, "Time axis (motion and pulses)", keys(page, plot));
+  registerCommands(target, "Time axis (motion and pulses)", keys(page, plot));
 }
 
-/** The cycle in the middle of what is shown. @param {State} state */
+/** The cycle in the middle of the visible time. @param {State} state */
 export function middleOf(state) {
   const { start, end } = shown(state);
   return Math.round((start + end) / 2);
 }
 
-/** Moves a cursor by so many columns of pixels, from the middle where it is not set, and brings it into view. @param {Page} page @param {{left: number, right: number}} plot @param {"a" | "b"} which @param {number} columns */
+/** Moves a cursor by columns of pixels, or from the middle if it is not set, and brings it into view. @param {Page} page @param {{left: number, right: number}} plot @param {"a" | "b"} which @param {number} columns */
 export function nudge(page, { left, right }, which, columns) {
   const { dispatch, now } = page;
   const { start, end } = shown(now());
@@ -113,11 +113,11 @@ function keys(page, plot) {
   const { dispatch, now } = page;
   const at = () => now().cursors.a ?? undefined;
   /** @param {"a" | "b"} which @param {number} sign */
-  const by = (which, sign) => () => nudge(page, plot(), which, sign);
+  const moveCursor = (which, sign) => () => nudge(page, plot(), which, sign);
   const clear = () => {
     const { box, picked, cursors } = now();
     if (box || picked) return dispatch({ type: "box", on: false });
-    // Nothing is left to remove: the focus leaves the view.
+    // Without cursors, Escape removes the focus from the view.
     if (cursors.a === null && cursors.b === null && document.activeElement instanceof HTMLElement)
       return document.activeElement.blur();
     dispatch({ type: "cursor", which: "a", cycle: null });
@@ -135,20 +135,20 @@ function keys(page, plot) {
     { keys: DIGITS, text: "show marker 0 to 9", run: (event) => void goToMarker(page, digitOf(event)) },
     {
       keys: DIGITS.map((digit) => `Shift+${digit}`),
-      text: "set that marker at the pointer, or at cursor A; again to remove it",
+      text: "set or remove that marker at the pointer, or at cursor A",
       run: mark,
     },
     { keys: ["+", "="], text: "zoom in, around cursor A if set", run: () => zoom(page, 0.5, at()) },
     { keys: ["-", "−"], text: "zoom out", run: () => zoom(page, 2, at()) },
     { keys: ["Home"], text: "show the whole run", run: () => dispatch({ type: "window", window: null }) },
-    { keys: ["ArrowLeft"], text: "earlier", run: () => pan(page, -0.1) },
-    { keys: ["ArrowRight"], text: "later", run: () => pan(page, 0.1) },
-    { keys: ["PageUp"], text: "a screen earlier", run: () => pan(page, -0.9) },
-    { keys: ["PageDown"], text: "a screen later", run: () => pan(page, 0.9) },
-    { keys: ["Shift+ArrowLeft"], text: "cursor A to the left", run: by("a", -1) },
-    { keys: ["Shift+ArrowRight"], text: "cursor A to the right", run: by("a", 1) },
-    { keys: ["Alt+ArrowLeft"], text: "cursor B to the left", run: by("b", -1) },
-    { keys: ["Alt+ArrowRight"], text: "cursor B to the right", run: by("b", 1) },
+    { keys: ["ArrowLeft"], text: "show an earlier time", run: () => pan(page, -0.1) },
+    { keys: ["ArrowRight"], text: "show a later time", run: () => pan(page, 0.1) },
+    { keys: ["PageUp"], text: "one screen earlier", run: () => pan(page, -0.9) },
+    { keys: ["PageDown"], text: "one screen later", run: () => pan(page, 0.9) },
+    { keys: ["Shift+ArrowLeft"], text: "move cursor A to the left", run: moveCursor("a", -1) },
+    { keys: ["Shift+ArrowRight"], text: "move cursor A to the right", run: moveCursor("a", 1) },
+    { keys: ["Alt+ArrowLeft"], text: "move cursor B to the left", run: moveCursor("b", -1) },
+    { keys: ["Alt+ArrowRight"], text: "move cursor B to the right", run: moveCursor("b", 1) },
     { keys: ["Backspace"], text: "back to the previous view", run: () => dispatch({ type: "back" }) },
     { keys: ["b"], text: "turn box zoom on or off", run: () => dispatch({ type: "box", on: !now().box }) },
     { keys: ["z"], text: "show the time between the cursors", run: () => zoomToCursors(page) },

@@ -12,26 +12,26 @@ import { distortion, namedSpectra, nameOf, overFrequency, UNITS } from "./spectr
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../engine/engine.js").Engine} Engine */
-/** @typedef {{name: string, ink: string, dash: number}} Key */
+/** @typedef {{name: string, ink: string, dash: number}} Key  An entry of the legend. */
 /** @typedef {{title: string, note: string, legend: Key[], panels: {caption: string, chart: import("../time/plot.js").Chart, height: number}[]}} Sheet */
 
-/** Size of a picture in CSS pixels; it is drawn at twice that. */
+/** Width of a picture and height of a chart in CSS pixels; drawn at double size. */
 const WIDTH = 1000;
 const PANEL = 190;
-/** Over the charts: title and legend; over each chart: its caption. */
+/** Height of title and legend, and of the caption of a chart. */
 const HEAD = 54;
 const CAPTION = 20;
 const COLUMNS = WIDTH - 94;
 
 /** @param {State} state @param {Engine} engine */
-async function seen(state, engine) {
+async function requestMotion(state, engine) {
   const reply = await requestColumns(engine, state, shown(state), COLUMNS, "file").catch(unlessDropped);
   if (!reply) throw new Error("there is no motion to save");
   return reply;
 }
 
 /** @param {Engine} engine @returns {Promise<import("../state/types.js").Spectra>} */
-async function spectra(engine) {
+async function requestSpectra(engine) {
   const reply = await engine.request("spectrum");
   if (!reply?.ideal && !reply?.pulses) throw new Error(reply?.note || "there is no spectrum to save");
   return reply;
@@ -45,7 +45,7 @@ function titleOf({ scenario, result }) {
 
 /** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */
 export async function motionSheet(state, engine) {
-  const columns = await seen(state, engine);
+  const columns = await requestMotion(state, engine);
   const charts = QUANTITIES.map((quantity) => chartOf(state, columns, quantity));
   const { start, end } = shown(state);
   const clock = state.result?.summary.clock_hz ?? 1;
@@ -77,14 +77,14 @@ export async function motorSheet(state, engine) {
   return { title, note: `${about} · ${note}`, legend, panels };
 }
 
-/** The curves of the view Motor as they are shown, as a table. @param {State} state @param {Engine} engine */
+/** The visible curves of the motor view as CSV. @param {State} state @param {Engine} engine */
 export function motorValues(state, engine) {
   return motorTable(state, engine, COLUMNS);
 }
 
 /** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */
 export async function spectrumSheet(state, engine) {
-  const found = await spectra(engine);
+  const found = await requestSpectra(engine);
   const { quantity, db } = selectedSpectrum();
   const { title, note } = titleOf(state);
   const all = namedSpectra(found);
@@ -109,12 +109,12 @@ function heightOf({ panels }) {
 }
 
 /**
- * Puts title, legend, captions and charts in their places.
+ * Draws title, legend, captions and charts at their positions.
  * @param {Sheet} sheet
  * @param {{text: (text: string, x: number, y: number, bold: boolean, ink: string) => number, key: (key: Key, x: number, y: number) => void,
- *   chart: (chart: import("../time/plot.js").Chart, x: number, y: number, width: number, height: number) => void}} pen  `text` gives the text's width.
+ *   chart: (chart: import("../time/plot.js").Chart, x: number, y: number, width: number, height: number) => void}} pen  `text` returns the width of the text.
  */
-function lay({ title, note, legend, panels }, pen) {
+function drawSheet({ title, note, legend, panels }, pen) {
   pen.text(title, 12, 20, true, "--ink");
   let x = 12;
   for (const key of legend) {
@@ -130,7 +130,7 @@ function lay({ title, note, legend, panels }, pen) {
   }
 }
 
-/** A picture of points. @param {Sheet} sheet @returns {Promise<Blob>} */
+/** A sheet as PNG. @param {Sheet} sheet @returns {Promise<Blob>} */
 export function bitmap(sheet) {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [2 * WIDTH, 2 * heightOf(sheet)];
@@ -139,7 +139,7 @@ export function bitmap(sheet) {
   context.scale(2, 2);
   context.fillStyle = color("--pane");
   context.fillRect(0, 0, WIDTH, heightOf(sheet));
-  lay(sheet, {
+  drawSheet(sheet, {
     text: (text, x, y, bold, ink) => {
       context.font = fontOf(bold);
       context.fillStyle = color(ink);
@@ -170,11 +170,11 @@ function fontOf(bold) {
   return `${bold ? "bold 14px" : "12px"} ${font()}`;
 }
 
-/** A picture of lines, as the text of an SVG file. @param {Sheet} sheet */
+/** A sheet as SVG. @param {Sheet} sheet */
 export function vector(sheet) {
   const measure = document.createElement("canvas").getContext("2d");
   const parts = [`<rect width="100%" height="100%" fill="${color("--pane")}"/>`];
-  lay(sheet, {
+  drawSheet(sheet, {
     text: (text, x, y, bold, ink) => {
       parts.push(
         `<text x="${x}" y="${y}" fill="${color(ink)}" font-family="${escaped(font())}" font-size="${bold ? 14 : 12}"${bold ? ' font-weight="bold"' : ""}>${escaped(text)}</text>`,
@@ -197,7 +197,7 @@ function escaped(text) {
   return text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
 }
 
-/** Time and the minimum and maximum value of each curve, a row a column of the picture. @param {State} state @param {import("./motion/bands.js").Seen} columns */
+/** The motion curves as CSV: one row per column of the picture, with the minimum and maximum of each curve. @param {State} state @param {import("./motion/bands.js").MotionData} columns */
 function motionTable(state, columns) {
   const bands = QUANTITIES.flatMap((quantity) => {
     const { unit } = chartOf(state, columns, quantity);
@@ -219,7 +219,7 @@ function motionTable(state, columns) {
   ]);
 }
 
-/** The curves of the motion view as they are shown, as a table. @param {State} state @param {Engine} engine */
+/** The visible curves of the motion view as CSV. @param {State} state @param {Engine} engine */
 export async function motionValues(state, engine) {
-  return motionTable(state, await seen(state, engine));
+  return motionTable(state, await requestMotion(state, engine));
 }

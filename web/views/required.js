@@ -1,7 +1,7 @@
 /** Required times of timing rules. */
 import { si } from "../state/number.js";
 
-/** The least time that a rule requires; in cycles it is rounded up. @param {import("../state/types.js").Timing | null} timing @param {string} rule */
+/** The time that a rule requires. @param {import("../state/types.js").Timing | null} timing @param {string} rule */
 export function required(timing, rule) {
   return si((timing?.rules.find((each) => each.rule === rule)?.required_ns ?? 0) * 1e-9, "s");
 }

@@ -11,8 +11,8 @@ import { paintTiming } from "./timing_table.js";
 
 /** First bit of DIR (contract A3). */
 const DIR = 16;
-/** A violation is shown in a window of so many of the times that it is about. */
-const AROUND = 14;
+/** Length of the window of a violation, relative to its time. */
+const WINDOW_FACTOR = 14;
 
 /** @param {{engine: import("../engine/engine.js").Engine, drivers: import("../state/types.js").DriverSheet[], showNote: (text: string) => void} & import("../state/types.js").Page} page */
 export function createResults({ engine, drivers, showNote, dispatch, now }) {
@@ -27,11 +27,11 @@ export function createResults({ engine, drivers, showNote, dispatch, now }) {
 
   /** The next violation after cursor A, or after the one that is selected. @param {Timing} found @param {boolean} forward */
   async function next(found, forward) {
-    take(found);
+    setTiming(found);
     const state = now();
     const selected = timing?.violations[current];
     const { a } = state.cursors;
-    // Several may lie in one cycle; from the selected one they are gone through one by one.
+    // Several violations may be in one cycle, so from the selected one the index decides.
     if (selected && selected.cycle === a) return show(current + (forward ? 1 : -1));
     const index = await engine
       .request("next_violation", a ?? (forward ? -1 : endOf(state)), forward)
@@ -39,31 +39,31 @@ export function createResults({ engine, drivers, showNote, dispatch, now }) {
     show(index ?? -1);
   }
 
-  /** The first violation of a rule, or where it came nearest to one. @param {string} rule */
-  function toRule(rule) {
+  /** Shows the first violation of a rule, or the time with the smallest slack. @param {string} rule */
+  function showRule(rule) {
     const first = timing?.violations.findIndex((each) => each.rule === rule) ?? -1;
-    const { least, required_cycles } = timing?.rules.find((each) => each.rule === rule) ?? {};
+    const { least: shortest, required_cycles } = timing?.rules.find((each) => each.rule === rule) ?? {};
     if (first >= 0) return show(first);
-    if (!least) return showNote(`${ruleName(rule)}: not measured in this run.`);
+    if (!shortest) return showNote(`${ruleName(rule)}: not measured in this run.`);
     current = -1;
     const clock = now().result?.summary.clock_hz ?? 1;
-    go({
-      cycle: least.cycle,
-      channel: least.channel,
+    showMeasured({
+      cycle: shortest.cycle,
+      channel: shortest.channel,
       rule,
-      measured_cycles: least.measured_cycles,
+      measured_cycles: shortest.measured_cycles,
       required_cycles: required_cycles ?? 0,
     });
     showNote(
-      `${ruleName(rule)}: shortest ${si(least.measured_cycles / clock, "s")}, channel ${least.channel}, at ${time(least.cycle / clock)}.`,
+      `${ruleName(rule)}: shortest ${si(shortest.measured_cycles / clock, "s")}, channel ${shortest.channel}, at ${time(shortest.cycle / clock)}.`,
     );
   }
 
-  /** Shows a measured time in the pulses, the edge that ends it at cursor A. @param {import("../state/types.js").Violation} measured */
-  function go({ cycle, channel, rule, measured_cycles, required_cycles }) {
+  /** Shows a measured time in the pulses, with cursor A at the edge that ends it. @param {import("../state/types.js").Violation} measured */
+  function showMeasured({ cycle, channel, rule, measured_cycles, required_cycles }) {
     dispatch({ type: "cursor", which: "a", cycle });
     dispatch({ type: "row", row: rule.startsWith("dir") ? DIR + channel : channel });
-    const wanted = AROUND * Math.max(1, measured_cycles, required_cycles);
+    const wanted = WINDOW_FACTOR * Math.max(1, measured_cycles, required_cycles);
     const { start, end } = shown(now());
     if (cycle < start || cycle > end || end - start > 20 * wanted) {
       dispatch({ type: "window", window: { start: cycle - wanted / 2, end: cycle + wanted / 2 } });
@@ -73,13 +73,13 @@ export function createResults({ engine, drivers, showNote, dispatch, now }) {
     if (matchMedia("(max-width: 899px)").matches) dispatch({ type: "view", view: "pulses" });
   }
 
-  /** Shows a violation in the pulses, its edge at cursor A. @param {number} index */
+  /** Shows a violation in the pulses. @param {number} index */
   function show(index) {
     const violation = timing?.violations[index];
     if (!violation) return showNote("No more violations in this direction.");
     const { cycle, channel, rule, measured_cycles } = violation;
     current = index;
-    go(violation);
+    showMeasured(violation);
     const clock = now().result?.summary.clock_hz ?? 1;
     showNote(
       `Violation ${index + 1} of ${timing?.violations.length}: channel ${channel}, ${ruleName(rule)} ${si(measured_cycles / clock, "s")} at ${time(cycle / clock)}, ${required(timing, rule)} required.`,
@@ -94,11 +94,11 @@ export function createResults({ engine, drivers, showNote, dispatch, now }) {
     }
   }
 
-  /** Shows another answer of the check. @param {Timing | null} next */
-  function take(next) {
+  /** Shows the result of a check. @param {Timing | null} next */
+  function setTiming(next) {
     if (next === timing) return;
     [timing, current] = [next, -1];
-    paintTiming(timing, { state: now(), drivers, toRule });
+    paintTiming(timing, { state: now(), drivers, showRule });
   }
-  return { next, take };
+  return { next, setTiming };
 }

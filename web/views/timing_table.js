@@ -1,5 +1,5 @@
 /** Tables of the timing check: rules and violations. */
-import { byId, element, fill, say } from "../dom.js";
+import { byId, element, fill, setText } from "../dom.js";
 import { ruleName } from "../form/schema.js";
 import { count, time } from "../state/number.js";
 import { required } from "./required.js";
@@ -7,40 +7,46 @@ import { required } from "./required.js";
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Timing} Timing */
 
-/** The columns of the two tables: what stands over them, and what that means where it is short. @type {{[table: string]: [string, string?][]}} */
+/** The columns of both tables: headings and their tooltips. @type {{[table: string]: [string, string?][]}} */
 const HEADS = {
-  margins: [["rule"], ["least"], ["required"], ["slack", "Measured time minus required time"], ["count", "Violations"]],
+  margins: [
+    ["rule"],
+    ["shortest"],
+    ["required"],
+    ["slack", "Measured time minus required time"],
+    ["count", "Violations"],
+  ],
   violations: [["ch", "Channel"], ["rule"], ["time"], ["measured"], ["required"]],
 };
 
 /**
  * @param {Timing | null} timing  None without a driver.
- * @param {{state: State, drivers: import("../state/types.js").DriverSheet[], toRule: (rule: string) => void}} page
+ * @param {{state: State, drivers: import("../state/types.js").DriverSheet[], showRule: (rule: string) => void}} page
  */
-export function paintTiming(timing, { state, drivers, toRule }) {
+export function paintTiming(timing, { state, drivers, showRule }) {
   const body = /** @type {Element} */ (byId("violations").querySelector("tbody"));
-  for (const [table, columns] of Object.entries(HEADS)) heads(byId(table), columns);
+  for (const [table, columns] of Object.entries(HEADS)) fillHead(byId(table), columns);
   const clock = state.result?.summary.clock_hz ?? 1;
-  // With all digits, so that measured minus required is the slack that is shown.
-  const at = (/** @type {number} */ cycles) => time(cycles / clock);
+  // With all digits, so that the printed times agree with the printed slack.
+  const cyclesText = (/** @type {number} */ cycles) => time(cycles / clock);
   const sheet = drivers.find(({ id }) => id === timing?.driver);
   const total = timing?.total ?? 0;
   const listed = timing?.violations.length ?? 0;
-  say(byId("timing-driver"), sheet?.name ?? "custom rules");
+  setText(byId("timing-driver"), sheet?.name ?? "custom rules");
   byId("timing-driver").title = sheet?.source ?? "";
-  const few = total > listed ? `; the first ${count(listed)} are listed` : "";
-  say(
+  const listNote = total > listed ? `; the first ${count(listed)} are listed` : "";
+  setText(
     byId("timing-total"),
     total === 0
       ? "The pulses meet the timing of the data sheet: no violations."
-      : `${count(total)} ${total === 1 ? "violation" : "violations"}${few}.`,
+      : `${count(total)} ${total === 1 ? "violation" : "violations"}${listNote}.`,
   );
   byId("timing-total").classList.toggle("error", total > 0);
   for (const id of ["violation-previous", "violation-next", "pulses-violation-previous", "pulses-violation-next"]) {
     /** @type {HTMLButtonElement} */ (byId(id)).disabled = total === 0;
   }
   byId("pulses-violations").hidden = timing === null;
-  say(
+  setText(
     byId("pulses-violations-count"),
     total === 0 ? "timing met" : `${count(total)} ${total === 1 ? "violation" : "violations"}`,
   );
@@ -48,25 +54,25 @@ export function paintTiming(timing, { state, drivers, toRule }) {
   const example = timing?.rules
     .filter(({ required_ns }) => required_ns > 0)
     .sort((one, other) => rounding(other, clock) - rounding(one, clock))[0];
-  say(
+  setText(
     byId("timing-rounding"),
     example
-      ? `Pulse times are whole cycles of ${at(1)}: ${time(example.required_ns * 1e-9)} needs at least ${count(example.required_cycles)} cycles (${at(example.required_cycles)}).`
+      ? `Pulse times are whole cycles of ${cyclesText(1)}: ${time(example.required_ns * 1e-9)} needs at least ${count(example.required_cycles)} cycles (${cyclesText(example.required_cycles)}).`
       : "",
   );
   byId("violations").hidden = total === 0;
   const rows = (timing?.rules ?? []).map(({ rule, required_ns, least, violations }) => {
     const slack = least === null ? null : (least.measured_cycles * 1e9 - required_ns * clock) / clock;
-    const bad = violations > 0;
+    const isViolated = violations > 0;
     return element(
       "tr",
-      bad ? { class: "bad" } : {},
-      element("th", { scope: "row" }, ruleButton(rule, bad, toRule)),
+      isViolated ? { class: "bad" } : {},
+      element("th", { scope: "row" }, ruleButton(rule, isViolated, showRule)),
       ...[
-        least ? at(least.measured_cycles) : "–",
+        least ? cyclesText(least.measured_cycles) : "–",
         required_ns === 0 ? "–" : time(required_ns * 1e-9),
         slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${time(slack * 1e-9)}`,
-        bad ? count(violations) : required_ns === 0 ? "–" : "0",
+        isViolated ? count(violations) : required_ns === 0 ? "–" : "0",
       ].map((text) => element("td", { class: "number" }, text)),
     );
   });
@@ -77,16 +83,20 @@ export function paintTiming(timing, { state, drivers, toRule }) {
       element(
         "tr",
         { "data-index": String(index) },
-        ...[String(channel), ruleName(rule), time(cycle / clock), at(measured_cycles), required(timing, rule)].map(
-          (text, column) => element("td", column === 1 ? {} : { class: "number" }, text),
-        ),
+        ...[
+          String(channel),
+          ruleName(rule),
+          time(cycle / clock),
+          cyclesText(measured_cycles),
+          required(timing, rule),
+        ].map((text, column) => element("td", column === 1 ? {} : { class: "number" }, text)),
       ),
     ),
   );
 }
 
 /** @param {HTMLElement} table @param {[string, string?][]} columns */
-function heads(table, columns) {
+function fillHead(table, columns) {
   const head = /** @type {Element} */ (table.querySelector("thead"));
   if (head.firstChild) return;
   const cells = columns.map(([text, title]) => {
@@ -98,18 +108,18 @@ function heads(table, columns) {
   head.append(element("tr", {}, ...cells));
 }
 
-/** @param {string} rule @param {boolean} bad @param {(rule: string) => void} toRule */
-function ruleButton(rule, bad, toRule) {
+/** @param {string} rule @param {boolean} isViolated @param {(rule: string) => void} showRule */
+function ruleButton(rule, isViolated, showRule) {
   const made = element(
     "button",
-    { type: "button", title: bad ? "Show the first violation" : "Show the smallest margin" },
+    { type: "button", title: isViolated ? "Show the first violation" : "Show the smallest slack" },
     ruleName(rule),
   );
-  made.addEventListener("click", () => toRule(rule));
+  made.addEventListener("click", () => showRule(rule));
   return made;
 }
 
-/** How much longer than required the whole cycles of a rule are, in s. @param {import("../state/types.js").RuleResult} rule @param {number} clock */
+/** The difference between the whole cycles of a rule and its required time, in s. @param {import("../state/types.js").RuleResult} rule @param {number} clock */
 function rounding({ required_ns, required_cycles }, clock) {
   return required_cycles / clock - required_ns * 1e-9;
 }

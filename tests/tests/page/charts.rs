@@ -139,7 +139,7 @@ fn a_moving_pointer_draws_on_the_cursors_layer_alone() -> Result<()> {
         }
         page.actions(mouse).await?;
         page.until("document.getElementById('motion-time').textContent.includes('cycle')").await?;
-        page.until("document.getElementById('read-speed').textContent.includes('from pulses')").await?;
+        page.until("document.getElementById('read-speed').textContent.includes('actual')").await?;
         let drawn: std::collections::BTreeMap<String, u32> = page.eval("window.strokes").await?;
         for layer in ["charts-cursor", "pulses-cursor"] {
             ensure!(drawn.get(layer).is_some_and(|strokes| *strokes > 0), "{layer} follows: {drawn:?}");

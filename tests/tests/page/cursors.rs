@@ -170,7 +170,7 @@ fn a_reading_is_the_value_in_the_cursors_very_cycle() -> Result<()> {
             ensure!(page.text("#motion-time").await?.starts_with("A "), "whose reading it is");
             let t = known.seconds(cycle);
             let position = page.text("#read-position").await?;
-            assert_eq!(reading(&position, "from pulses")?, f64::from(pulses.position_at(t)), "{position}");
+            assert_eq!(reading(&position, "actual")?, f64::from(pulses.position_at(t)), "{position}");
             for (quantity, ideal) in [
                 ("position", plan.position(t - zero_s)),
                 ("speed", plan.speed(t - zero_s)),

@@ -180,7 +180,7 @@ fn a_part_of_the_page_that_fails_gives_the_port_back_and_is_replaced() -> Result
         )
         .await?;
         start(&page).await?;
-        page.until(&format!("{SAID}.startsWith('This failed: ')")).await?;
+        page.until(&format!("{SAID}.startsWith('The transfer failed: ')")).await?;
         ensure!(page.eval::<String>(SAID).await?.contains("Switch off its power if it must not move"));
         page.until("peer.closed === 1").await?;
         page.until("!document.getElementById('live-start').disabled").await?;

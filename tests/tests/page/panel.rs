@@ -121,7 +121,7 @@ fn a_press_at_the_cursor_is_a_change_that_is_linked_and_undone() -> Result<()> {
         let pressed = with_inputs(&press("jog_plus", 4_000_000, 4_000_000 + SHORTEST))?;
         ensure!(pressed.digest != none.digest, "a jog makes steps");
         until_run(&page, &pressed).await?;
-        page.until(&format!("{SAID}.includes('jog_plus is pressed at 250')")).await?;
+        page.until(&format!("{SAID}.includes('Jog right is pressed at 250')")).await?;
         page.click("#undo").await?;
         until_run(&page, &none).await?;
         page.until(&format!("{SAID} === ''")).await?;
@@ -146,7 +146,7 @@ fn what_is_to_be_done_next_is_told_and_where_a_move_never_comes_to_its_speed() -
         open(&page, &known, 3_200_000).await?;
         let advice = "document.querySelector('.panel-advice').textContent";
         page.until(&format!("{WORDS}.startsWith('ALARM MEMORY · position lost')")).await?;
-        page.until(&format!("{advice}.startsWith('Clear. The memory is invalid')")).await?;
+        page.until(&format!("{advice}.startsWith('The memory is invalid')")).await?;
         let speed = "source.standalone[0].groups[0].move.speed_hz";
         page.until(&format!("document.querySelector(`[data-path='{speed}']`).closest('.field').querySelector('.also').textContent.includes('too short for 4000 Hz')")).await?;
         page.click("[data-input='clear']").await?;
@@ -173,7 +173,7 @@ fn the_power_is_cut_at_the_cursor_and_comes_back() -> Result<()> {
         page.press(".strip canvas", "\u{e00c}").await?;
         until_shown(&page, &at(&known, 16_000_000)).await?;
         page.click("[data-input='estop'][data-level='1']").await?;
-        page.until(&format!("{SAID}.startsWith('estop is 1')")).await
+        page.until(&format!("{SAID}.startsWith('Emergency stop is 1')")).await
     })
 }
 
@@ -184,9 +184,9 @@ fn what_cannot_be_is_told_and_changes_nothing() -> Result<()> {
         let known = with_inputs(&jog)?;
         open(&page, &known, 4_000_000).await?;
         page.click("[data-input='jog_plus']").await?;
-        page.until(&format!("{SAID}.includes('jog_plus already changes at 250 ms')")).await?;
+        page.until(&format!("{SAID}.includes('“jog right” already changes at 250 ms')")).await?;
         page.click("[data-input='limit_max']").await?;
-        page.until(&format!("{SAID}.includes('limit_max is driven by the axis (axis.max_switch_at_steps)')"))
+        page.until(&format!("{SAID}.includes('The right limit switch is driven by')"))
             .await?;
         page.ready().await?;
         until_run(&page, &known).await?;
@@ -218,7 +218,7 @@ fn an_input_is_chosen_moved_and_removed_by_keys_and_by_its_field() -> Result<()>
         page.js::<bool>(&fill("0.45 s"), vec![]).await?;
         until_run(&page, &with_inputs(&press("jog_plus", 4_000_000, 7_200_000))?).await?;
         page.js::<bool>(&fill("4000000"), vec![]).await?;
-        page.until(&format!("{SAID}.includes('jog_plus would change twice at 250 ms')")).await?;
+        page.until(&format!("{SAID}.includes('“jog right” would change twice at 250 ms')")).await?;
         page.press(".strip canvas", "\u{e017}").await?;
         until_run(&page, &with_inputs(r#"{"cycle":4000000,"input":"jog_plus","level":1}"#)?).await
     })

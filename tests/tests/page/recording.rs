@@ -227,7 +227,7 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
             "document.getElementById('motion-time').textContent.replace(/\\D/g, '').endsWith('{cycle}')"
         ))
         .await?;
-        let read = cursors::reading(&page.text("#read-position").await?, "from pulses")?;
+        let read = cursors::reading(&page.text("#read-position").await?, "actual")?;
         ensure!((20.0..180.0).contains(&read), "{read}");
         assert_eq!(read, f64::from(position), "at cycle {cycle}");
         page.picture("recording-compare").await?;

@@ -36,7 +36,7 @@ const DRAWN: &str = "(() => { const canvas = document.querySelector('.whole canv
 async fn show_part(page: &Session, name: &str, text: &str) -> Result<()> {
     choose_file(page, name, text).await?;
     says(page, "200 steps").await?;
-    page.click("dialog.recording [aria-label='Show a part, from one time to another']").await?;
+    page.click("dialog.recording [aria-label='Show a part: enter its start and end']").await?;
     type_into(page, "Show from", "0.1").await?;
     type_into(page, "Show up to", "150 ms").await?;
     says(page, "Shown: 100 ms to 150 ms").await?;

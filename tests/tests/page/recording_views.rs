@@ -97,7 +97,7 @@ fn a_recordings_acceleration_is_read_at_the_cursors_and_between_them_and_said_wh
         }
         let said = page.text("#between-tables").await?;
         ensure!(said.contains("rate of the next eight steps minus rate of the eight steps before"), "{said}");
-        let read = cursors::reading(&page.text("#read-acceleration").await?, "from pulses")?;
+        let read = cursors::reading(&page.text("#read-acceleration").await?, "actual")?;
         ensure!(
             (read - expected[0]).abs() <= 1e-5 * expected[0].abs(),
             "{read} at A, wanted {}",
@@ -258,7 +258,7 @@ fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
         page.js::<bool>(drag, vec![json!(0.2), json!(0.2)]).await?;
         page.until("document.getElementById('recording-show-from').checkVisibility() === false").await?;
         page.until(READY).await?;
-        page.click("dialog.recording [aria-label='Show a part, from one time to another']").await?;
+        page.click("dialog.recording [aria-label='Show a part: enter its start and end']").await?;
         page.until("document.activeElement.id === 'recording-show-from'").await?;
         type_into(&page, "Show from", &times[0]).await?;
         type_into(&page, "Show up to", &times[1]).await?;

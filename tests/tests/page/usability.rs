@@ -179,7 +179,7 @@ fn the_help_lists_every_key_and_the_help_page_every_term_and_document() -> Resul
         let names: Vec<String> = page
             .eval(
                 "Promise.all([import('./form/schema.js'), import('./help/term_texts.js'), import('./help/explained.js')])
-                 .then(([{ terms, takeExplanations }, { TERMS, DERIVED }, { EXPLAINED }]) => { takeExplanations(EXPLAINED);
+                 .then(([{ terms, setExplanations }, { TERMS, DERIVED }, { EXPLAINED }]) => { setExplanations(EXPLAINED);
                  return [terms(), DERIVED, ...Object.values(TERMS)].flatMap(Object.values).map(({ name }) => name); })",
             )
             .await?;

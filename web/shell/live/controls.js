@@ -1,5 +1,5 @@
 /** The state of the controls of the device dialog. */
-import { about, ROLES, stopTitle, whyNone } from "./roles.js";
+import { about, ROLES, stopTitle, whyUnavailable } from "./roles.js";
 
 /** @typedef {import("./roles.js").Role} Role */
 /** @typedef {import("./session.js").LiveSession} LiveSession */
@@ -7,17 +7,17 @@ import { about, ROLES, stopTitle, whyNone } from "./roles.js";
 /**
  * @param {LiveSession} session
  * @param {{role: Role, scenario: import("../../state/types.js").Scenario, noPort: string, isInFront: boolean}} dialog
- *   The selected role; `noPort` says why this page gets no port.
+ *   The selected role; `noPort`: why this page cannot use a port.
  */
 export function controlsOf(session, { role, scenario, noPort, isInFront }) {
   const { device, facts, broken, running, mayMove } = session;
   const { port, unsettled } = device;
   const found = facts?.[role];
-  const why = noPort || broken || whyNone(scenario, found);
+  const why = noPort || broken || whyUnavailable(scenario, found);
   const isIdle = running === null;
   const isChooseDisabled = (why !== "" && unsettled === null) || !isIdle;
   const isButtonHidden = !isIdle || !isInFront;
-  // Packets without replies cannot be stopped, only not sent any more.
+  // A raw line has no STOP: only the sending can be stopped.
   const isRaw = isIdle ? unsettled === null && session.isRaw : session.sent.raw;
   return {
     about: {
@@ -49,12 +49,12 @@ export function controlsOf(session, { role, scenario, noPort, isInFront }) {
   };
 }
 
-/** What is reported when a role begins. @param {Role} role @param {boolean} isStop */
+/** The status when a role starts. @param {Role} role @param {boolean} isStop  Whether only STOP is sent. */
 export const beginText = (role, isStop) => (isStop ? "Sending STOP…" : role === "serve" ? "Replying…" : "Sending…");
 
-/** What the dialog says first while it is not known whether a device has ended. @param {import("./session.js").Device} device */
+/** The first message of the dialog if the last transfer may not have ended. @param {import("./session.js").Device} device */
 export function unsettledText({ port, unsettled }) {
   if (!unsettled) return "";
-  const where = port ? "" : "choose its port, then press STOP. ";
-  return `The last transfer may not have ended: ${where}STOP is sent at ${unsettled.baud} baud.`;
+  const instruction = port ? "" : "choose its port, then press STOP. ";
+  return `The last transfer may not have ended: ${instruction}STOP is sent at ${unsettled.baud} baud.`;
 }

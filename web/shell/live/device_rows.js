@@ -6,16 +6,17 @@ import { count } from "../../state/number.js";
 
 /** Rows of replies that stay visible. */
 const MAX_ROWS = 300;
-const COLUMNS = ["time", "to", "frame", "reply", "state", "done", "delay", "model's", "differs"];
+const COLUMNS = ["time", "to", "frame", "reply", "state", "ticks done", "delay", "model delay", "difference"];
+/** Columns with numbers. */
 const NUMBERS = [0, 1, 5, 6, 7];
 
 /** @type {ReturnType<typeof create> | null} */
-let made = null;
+let deviceTable = null;
 
-/** The one table of the page. */
+/** The table, which is created once. */
 export function deviceRows() {
-  made ??= create();
-  return made;
+  deviceTable ??= create();
+  return deviceTable;
 }
 
 function create() {
@@ -48,23 +49,23 @@ function create() {
   byId("device").after(
     element("span", { class: "group live-sides", role: "group", "aria-label": "Packets of" }, ...sides),
   );
-  const unanswered = element("p", { class: "note" }, "Raw packets get no reply.");
-  unanswered.hidden = true;
-  rows.append(unanswered);
+  const noReplies = element("p", { class: "note" }, "Raw packets get no reply.");
+  noReplies.hidden = true;
+  rows.append(noReplies);
   view.append(rows);
 
-  /** @param {boolean} device  Whether the device's are shown, or the model's. */
+  /** @param {boolean} device  Whether to show the replies of the device, or the packets of the model. */
   function show(device) {
     view.classList.toggle("of-device", device);
     for (const [index, side] of sides.entries()) side.setAttribute("aria-pressed", String(device === (index === 1)));
   }
 
   return {
-    /** @param {boolean} raw  Whether nobody answers. */
+    /** Clears the table for a new stream. @param {boolean} raw  Whether the line has no replies. */
     begin(raw) {
       fill(body);
       table.hidden = raw;
-      unanswered.hidden = !raw;
+      noReplies.hidden = !raw;
       show(!raw);
       view.scrollIntoView({ block: "nearest" });
     },

@@ -1,14 +1,14 @@
-/** While the device dialog is open, Escape stops the device, and leaving the page asks first. */
+/** While the device dialog is open: Escape stops the device, and the browser asks before the user leaves the page. */
 
 /**
  * @param {import("./session.js").LiveSession} session @param {HTMLDialogElement} dialog
- * @param {{isInFront: () => boolean, pressStop: () => void, stop: () => void}} actions  `stop` only ends the stream, as there is no time for more.
- * @returns {() => void}  Ends it.
+ * @param {{isInFront: () => boolean, pressStop: () => void, stop: () => void}} actions  `stop` only ends the stream: a page that is being left has no time for more.
+ * @returns {() => void}  Removes the guards.
  */
 export function guardPage(session, dialog, { isInFront, pressStop, stop }) {
   const listening = new AbortController();
   const { signal } = listening;
-  // Escape stops what moves before it closes anything; while it sends, wherever it is pressed.
+  // Escape stops a moving device before it closes any dialog; while streaming, wherever the focus is.
   window.addEventListener(
     "keydown",
     (event) => {

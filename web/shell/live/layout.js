@@ -18,10 +18,10 @@ export function createLayout() {
   const stop = element("button", { type: "button", id: "live-stop", class: "live-stop" }, "STOP");
   const actions = element("div", { class: "live-actions" }, choose, allowed, start, end, aside, stop);
   const status = element("p", { id: "live-status", class: "live-status", role: "status" });
-  const standing = element("p", { id: "live-standing", class: "live-standing" });
+  const progressText = element("p", { id: "live-standing", class: "live-standing" });
   const progress = element("progress", { max: "1", value: "0" });
   const curves = positionCurves();
-  const twin = element("div", { id: "live-twin" });
+  const comparison = element("div", { id: "live-twin" });
   const report = element("textarea", {
     id: "live-report",
     readonly: "",
@@ -36,7 +36,7 @@ export function createLayout() {
   });
   copy.textContent = "Copy the report";
   const reported = element("div", { id: "live-reported" }, report, copy);
-  /** Of a session that could not be recorded. */
+  /** Only for a session that could not be recorded. */
   const times = element("button", { type: "button", id: "live-times" }, "Save wall-clock times");
   for (const part of [progress, curves.node, reported, times]) part.hidden = true;
   const close = element("button", { type: "button", id: "live-close" }, "Close");
@@ -53,9 +53,9 @@ export function createLayout() {
       status,
       times,
       progress,
-      standing,
+      progressText,
       curves.node,
-      twin,
+      comparison,
       reported,
       element(
         "p",
@@ -66,7 +66,7 @@ export function createLayout() {
     ),
   );
   return {
-    ...{ dialog, roles, about, choose, allowed, start, end, aside, stop, actions, status, standing, progress },
-    ...{ curves, twin, report, copy, reported, times, close },
+    ...{ dialog, roles, about, choose, allowed, start, end, aside, stop, actions, status, progressText, progress },
+    ...{ curves, comparison, report, copy, reported, times, close },
   };
 }

@@ -1,22 +1,22 @@
 /** The ports of the device dialog: selected, allowed earlier, or stuck. */
 import { element, fill } from "../../dom.js";
 import { serial } from "../../engine/live.js";
-import { message } from "../link.js";
+import { errorMessage } from "../../state/error_message.js";
 import { usbOf } from "./roles.js";
 
-/** Of a port that the browser does not give back. */
+/** Error for a port that the browser does not release. */
 export const STUCK = "The port could not be closed: reload this page before you use it again.";
 
 /** @type {WeakSet<any>} */
 const stuck = new WeakSet();
 
 /**
- * @param {import("./session.js").Device} device @param {HTMLElement} allowed  Filled with the ports that were allowed before.
+ * @param {import("./session.js").Device} device @param {HTMLElement} allowed  Element for the buttons of ports that were allowed before.
  * @param {{report: (text: string, isError?: boolean) => void, onSelect: () => void, focus: () => void}} dialog
  */
 export function createPorts(device, allowed, { report, onSelect, focus }) {
   /** @param {any} port */
-  function take(port) {
+  function select(port) {
     if (stuck.has(port)) return report(STUCK, true);
     device.port = port;
     report(`Port selected${usbOf(port)}. It is not open yet.`);
@@ -26,16 +26,16 @@ export function createPorts(device, allowed, { report, onSelect, focus }) {
 
   async function choose() {
     try {
-      take(await serial().requestPort());
+      select(await serial().requestPort());
     } catch (error) {
-      // No port was selected, or this page may have none.
+      // The user closed the list of ports, or the browser denies access.
       const isNone = error instanceof DOMException && error.name === "NotFoundError";
-      report(isNone ? "No port was selected." : `No port: ${message(error)}.`, !isNone);
+      report(isNone ? "No port was selected." : `No port: ${errorMessage(error)}.`, !isNone);
       if (device.port) focus();
     }
   }
 
-  /** Ports that the user, or the browser's policy, allowed before need no chooser. None is opened. */
+  /** Offers ports that were allowed before, so that the user needs no list of ports. Opens none. */
   async function offer() {
     /** @type {any[]} */
     const ports =
@@ -47,17 +47,17 @@ export function createPorts(device, allowed, { report, onSelect, focus }) {
       .map((each, index) => {
         const name = `${ports.length > 1 ? `Port ${index + 1}` : "Port"} allowed before${usbOf(each)}`;
         const press = element("button", { type: "button", title: "Use it without the port list of the browser" }, name);
-        press.addEventListener("click", () => take(each));
+        press.addEventListener("click", () => select(each));
         return press;
       });
     fill(allowed, ...offers);
   }
 
-  /** Gives up a port that the browser does not give back. @param {any} port */
-  function giveUp(port) {
+  /** Excludes a port that the browser does not release. @param {any} port */
+  function exclude(port) {
     stuck.add(port);
     if (device.port === port) device.port = null;
     void offer();
   }
-  return { choose, offer, giveUp };
+  return { choose, offer, exclude };
 }

@@ -1,4 +1,4 @@
-/** Reports of a stream to a device or a session with a host. */
+/** Texts about a stream to a device, or a session with a host. */
 import { element } from "../../dom.js";
 import { count, counted, time } from "../../state/number.js";
 
@@ -10,6 +10,7 @@ import { count, counted, time } from "../../state/number.js";
 /** @typedef {import("../../engine/live.js").Served} Served */
 /** @typedef {import("../../engine/live.js").End} End */
 
+const repliesText = (/** @type {number} */ number) => `${count(number)} ${number === 1 ? "reply" : "replies"}`;
 const ms = (/** @type {number | null} */ value) => (value === null ? "–" : `${value.toFixed(2)} ms`);
 
 /** The outcome as text, and whether it is good. @param {Reported} reported @returns {{text: string, good: boolean}} */
@@ -30,7 +31,7 @@ export function outcome(reported) {
 }
 
 /** The same for raw packets. @param {RawReport} raw @param {Ended} ended @returns {{text: string, good: boolean}} */
-function outcomeOfRaw({ sent, packets, stood, left_ms }, { stopped, lost }) {
+function outcomeOfRaw({ sent, packets, stood: standstills, left_ms }, { stopped, lost }) {
   const queued = `the device still executes its queue, about ${left_ms.toFixed(0)} ms`;
   if (lost) return { text: `Not verified: the port is lost: ${lost.replace(/\.$/, "")}; ${queued}.`, good: false };
   if (stopped)
@@ -38,23 +39,23 @@ function outcomeOfRaw({ sent, packets, stood, left_ms }, { stopped, lost }) {
       text: `Stopped sending after ${count(sent)} of ${counted(packets, "packet")}: a raw line has no STOP, and ${queued}. Switch off its power if it must not move.`,
       good: false,
     };
-  const dry = stood > 0 ? ` The motor stopped before ${counted(stood, "tick")}.` : "";
+  const standstillText = standstills > 0 ? ` The motor stopped before ${counted(standstills, "tick")}.` : "";
   return {
-    text: `Not verified: raw packets get no reply. All ${counted(packets, "packet")} are sent.${dry}`,
-    good: stood === 0,
+    text: `Not verified: raw packets get no reply. All ${counted(packets, "packet")} are sent.${standstillText}`,
+    good: standstills === 0,
   };
 }
 
-/** Median of all delays. @param {number[]} delays */
+/** The median of delays. @param {number[]} delays */
 function median(delays) {
   const sorted = delays.toSorted((a, b) => a - b);
   return sorted[Math.floor(sorted.length / 2)] ?? 0;
 }
 
-/** The report as a text to copy. @param {string} title @param {string} began @param {Reported} reported @param {{own: number[], model: number[]}} delays */
-export function reportText(title, began, reported, { own, model }) {
+/** The report as a text to copy. @param {string} title @param {string} startTime @param {Reported} reported @param {{own: number[], model: number[]}} delays */
+export function reportText(title, startTime, reported, { own, model }) {
   const lines = [
-    `Stepscope: ${title || "an experiment"} to a device, ${began}, ${time(reported.ms / 1000)}`,
+    `Stepscope: ${title || "an experiment"} to a device, ${startTime}, ${time(reported.ms / 1000)}`,
     outcome(reported).text,
   ];
   if (reported.raw) return `${[...lines, reported.raw.text].join("\n")}`;
@@ -65,7 +66,7 @@ export function reportText(title, began, reported, { own, model }) {
   );
   if (own.length > 0)
     lines.push(
-      `delay of ${counted(own.length, "reply").replace("replys", "replies")}: median ${ms(median(own))}, maximum ${ms(own.reduce((most, each) => Math.max(most, each), 0))}; median of the model ${ms(median(model))}`,
+      `delay of ${repliesText(own.length)}: median ${ms(median(own))}, maximum ${ms(Math.max(0, ...own))}; median of the model ${ms(median(model))}`,
     );
   return `${lines.join("\n")}\n`;
 }
@@ -77,17 +78,17 @@ const endTexts = (end) => [
   end?.went?.map((steps) => count(steps)).join("  ") ?? "unknown",
 ];
 
-/** Final states of device and model. @param {ReportedFramed} reported @returns {Node[]} */
-export function twinOf({ ends, difference, stopped, verified }) {
+/** The final states of device and model. @param {ReportedFramed} reported @returns {Node[]} */
+export function finalStates({ ends, difference, stopped, verified }) {
   const rows = ends.flatMap(({ controller, device, model }) =>
     ["state", "ticks done", "steps moved"].map((name, index) => {
-      const [own, its] = [endTexts(device)[index], endTexts(model)[index]];
+      const [own, expected] = [endTexts(device)[index], endTexts(model)[index]];
       return element(
         "tr",
-        own === its || device === null || (stopped && index > 0) ? {} : { class: "differs" },
+        own === expected || device === null || (stopped && index > 0) ? {} : { class: "differs" },
         element("th", { scope: "row" }, ends.length > 1 ? `controller ${controller}, ${name}` : name),
         element("td", {}, own),
-        element("td", {}, its),
+        element("td", {}, expected),
       );
     }),
   );
@@ -105,7 +106,7 @@ export function twinOf({ ends, difference, stopped, verified }) {
   ];
 }
 
-/** The state of a soft device. @param {Served} served */
+/** The state of the page as a device. @param {Served} served */
 export function servedText({ seconds, received, replies, latest_ms, set_backs, set_back_ms, missed, controllers }) {
   const each = controllers.map(({ state, queued, queue_depth, positions, faults }) =>
     [
@@ -122,5 +123,5 @@ export function servedText({ seconds, received, replies, latest_ms, set_backs, s
       ? ` Not in real time: the clock was set back ${counted(set_backs, "time")}, ${set_back_ms.toFixed(0)} ms in total.`
       : ` Replies at most ${ms(latest_ms)} late.`;
   const lost = missed > 0 ? ` ${counted(missed, "byte")} of replies not read.` : "";
-  return `${seconds.toFixed(1)} s: ${counted(received, "byte")} received, ${counted(replies, "reply").replace("replys", "replies")}; ${each.join("; ")}.${lag}${lost}`;
+  return `${seconds.toFixed(1)} s: ${counted(received, "byte")} received, ${repliesText(replies)}; ${each.join("; ")}.${lag}${lost}`;
 }

@@ -5,34 +5,34 @@ import { outcome } from "./report.js";
 /** @typedef {import("../../engine/live.js").Exchange} Exchange */
 /** @typedef {import("../../engine/live.js").Reported} Reported */
 /** @typedef {import("./roles.js").Role} Role */
-/** @typedef {{json: string, title: string, baud: number, raw: boolean, port: any}} Sent  An experiment as it goes on a port. */
+/** @typedef {{json: string, title: string, baud: number, raw: boolean, port: any}} Sent  An experiment that is sent to a port. */
 /**
- * What outlives the dialog: the selected port, and what a device has replied to and is not known to have ended. STOP goes as that
- * went, also from the next dialog.
+ * What stays after the dialog is closed: the selected port, and the last transfer that may not have ended. STOP uses the settings
+ * of that transfer.
  * @typedef {{port: any, unsettled: Sent | null}} Device
  */
-/** @typedef {{action: "none" | "begin" | "end" | "stop", text: string}} Press  What a press of STOP does. */
+/** @typedef {{action: "none" | "begin" | "end" | "stop", text: string}} StopPress  The effect of a press of STOP. */
 
-/** The end of a device that nobody sends to. */
+/** What a device does when the page stops sending. */
 export const RUNS_DRY =
   "The device executes its queue and stops with UNDERRUN. Switch off its power if it must not move.";
 
 export class LiveSession {
-  /** What can be done with the experiment; null until that is known. @type {Facts | null} */
+  /** The available roles for the experiment; null until they are known. @type {Facts | null} */
   facts = null;
   /** The experiment of `facts`. */
   json = "";
-  /** Why nothing can be done at all. */
+  /** Why the dialog does not work at all. */
   broken = "";
-  /** What has the port. @type {Role | null} */
+  /** The role that uses the port. @type {Role | null} */
   running = null;
-  /** Whether its end was reported: the port is being given back. */
+  /** Whether its end was reported; the port may still be closing. */
   ended = false;
-  /** Whether STOP was pressed meanwhile. */
+  /** Whether STOP was pressed since the start. */
   stopPressed = false;
   /** @type {Sent} */
   sent = { json: "", title: "", baud: 0, raw: false, port: null };
-  /** Of the replies, in ms. @type {{own: number[], model: number[]}} */
+  /** Delays of the replies, in ms. @type {{own: number[], model: number[]}} */
   delays = { own: [], model: [] };
   #hadFacts = false;
   #warned = false;
@@ -42,18 +42,18 @@ export class LiveSession {
     this.device = device;
   }
 
-  /** Whether a device may move by what was sent, and can be told to stop. */
+  /** Whether a device may be moving and can be stopped. */
   get mayMove() {
     const { port, unsettled } = this.device;
     return this.running === "stream" || (this.running === null && unsettled !== null && port !== null);
   }
 
-  /** Whether the experiment's packets would be sent without replies. */
+  /** Whether the experiment uses raw packets, which have no replies. */
   get isRaw() {
     return this.facts?.stream.state?.lead !== undefined;
   }
 
-  /** Returns the role to select where the first one is impossible. @param {Facts} facts @returns {Role | null} */
+  /** Stores the available roles. Returns the role to select if the first one is not available. @param {Facts} facts @returns {Role | null} */
   setFacts(facts) {
     const other = !this.#hadFacts && facts.stream.why && !facts.serve.why ? "serve" : null;
     this.facts = facts;
@@ -61,14 +61,14 @@ export class LiveSession {
     return other;
   }
 
-  /** Why a start needs one more press; empty where it does not. */
+  /** Why Start has to be pressed again; empty if it does not. */
   warning() {
     if (!this.device.unsettled || this.#warned) return "";
     this.#warned = true;
     return "The last transfer may not have ended: press STOP first, or start again.";
   }
 
-  /** @param {Role} role @param {boolean} isStop  Whether STOP is all that is sent. @param {string} title */
+  /** @param {Role} role @param {boolean} isStop  Whether only STOP is sent. @param {string} title */
   begin(role, isStop, title) {
     const { port, unsettled } = this.device;
     const own = {
@@ -83,19 +83,19 @@ export class LiveSession {
     this.delays = { own: [], model: [] };
   }
 
-  /** Only a STOP that reaches a device is confirmed, so a press is never dropped. @returns {Press} */
+  /** A press is never dropped: STOP is sent until a device confirms it. @returns {StopPress} */
   pressStop() {
     const none = /** @type {const} */ ({ action: "none", text: "" });
     if (this.running === "serve" || this.device.port === null) return none;
     if (this.running === null) return { action: "begin", text: "" };
     if (this.sent.raw) {
       if (this.ended) return none;
-      return { action: "end", text: "Sending has ended; the device executes its queue…" };
+      return { action: "end", text: "Sending has stopped. The device executes its queue…" };
     }
     this.stopPressed = true;
     const text = this.ended
-      ? "STOP is sent as soon as the port is free…"
-      : "STOP is sent until the device confirms it…";
+      ? "STOP will be sent as soon as the port is free…"
+      : "Sending STOP until the device confirms it…";
     return { action: "stop", text };
   }
 
@@ -104,7 +104,7 @@ export class LiveSession {
     for (const { delay_ms, model_ms, reply } of exchanges) {
       if (delay_ms !== null) this.delays.own.push(delay_ms);
       if (model_ms !== null) this.delays.model.push(model_ms);
-      // A device that has not replied gets no tick.
+      // A device gets ticks only after its first reply.
       if (reply !== null) this.device.unsettled = this.sent;
     }
   }
@@ -112,14 +112,14 @@ export class LiveSession {
   /** The end of a stream. @param {Reported} reported */
   reported(reported) {
     const result = outcome(reported);
-    // A STOP that was pressed too late for this stream goes once the port is given back.
+    // A STOP that came too late for this stream is sent after the port has closed.
     if (!this.ended) this.stopPressed &&= !result.good && !reported.stopped;
     this.ended = true;
     if (result.good) this.device.unsettled = null;
     return result;
   }
 
-  /** The port is given back, or the browser keeps it. Returns whether the worker had failed. */
+  /** The port is closed, or the browser does not release it. Returns whether the worker had failed. */
   closed() {
     const hasFailed = this.facts === null;
     this.running = null;
@@ -127,7 +127,7 @@ export class LiveSession {
     return hasFailed;
   }
 
-  /** The worker that had the port has failed. Returns what to report of the stream; empty where there was none. @param {string} why */
+  /** The worker has failed. Returns the message about the stream; empty if there was none. @param {string} why */
   failed(why) {
     this.facts = null;
     this.json = "";
@@ -139,6 +139,6 @@ export class LiveSession {
     const isStream = this.running === "stream";
     // Its last replies may not have been reported.
     if (isStream && !this.sent.raw) this.device.unsettled ??= this.sent;
-    return `This failed: ${why}.${isStream ? ` ${RUNS_DRY}` : ""}`;
+    return `The transfer failed: ${why}.${isStream ? ` ${RUNS_DRY}` : ""}`;
   }
 }

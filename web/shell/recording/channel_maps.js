@@ -1,11 +1,11 @@
-/** The channel maps that were last used, by the names of a file's channels. */
+/** Saves the channel maps of the last recordings, by the names of their channels. */
 
 const KEY = "stepscope.maps";
 const MAX_MAPS = 30;
 
-/** @typedef {[names: string, map: string][]} Maps  The newest first. */
+/** @typedef {[names: string, map: string][]} Maps  Newest first. */
 
-/** @param {string | null} text  As it was saved. @returns {Maps} */
+/** @param {string | null} text  Saved JSON. @returns {Maps} */
 export function parseMaps(text) {
   try {
     const maps = JSON.parse(text ?? "[]");
@@ -40,6 +40,6 @@ export function saveMap(channels, map) {
   try {
     localStorage.setItem(KEY, JSON.stringify(withMap(parseMaps(localStorage.getItem(KEY)), channels, map)));
   } catch {
-    // Private windows and full disks refuse; the page works without.
+    // Private windows and full disks reject this; the page works without.
   }
 }

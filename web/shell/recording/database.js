@@ -1,11 +1,11 @@
-/** The database of saved recordings. Browsers may refuse, lose or damage what they were given: all of this can fail. */
+/** The database of saved recordings. Every function can fail: browsers may reject, lose or damage data. */
 import { lastCycle, makeRoom } from "./record_limits.js";
 
 /** @typedef {import("./record_limits.js").Saved} Saved */
 
 const DATABASE = "stepscope";
-/** What each recording is, and its records: key [id, number of the piece]. */
-const [FACTS, PIECES] = ["recordings", "pieces"];
+/** Stores of the recordings, and of the pieces of their records with the key [id, number of the piece]. */
+const [RECORDINGS, PIECES] = ["recordings", "pieces"];
 
 /** @template T @param {IDBRequest<T>} request @returns {Promise<T>} */
 const result = (request) =>
@@ -25,7 +25,7 @@ const completed = (transaction) =>
 export async function withDatabase(work) {
   const request = indexedDB.open(DATABASE, 1);
   request.onupgradeneeded = () => {
-    request.result.createObjectStore(FACTS, { keyPath: "id" });
+    request.result.createObjectStore(RECORDINGS, { keyPath: "id" });
     request.result.createObjectStore(PIECES);
   };
   const database = await result(request);
@@ -39,39 +39,39 @@ export async function withDatabase(work) {
 /** Keys of all pieces of a recording. @param {string} id */
 const piecesOf = (id) => IDBKeyRange.bound([id], [id, []]);
 
-/** Saves a recording in place of the oldest ones. Returns the ids of all that are saved. @param {Saved} recording @param {Uint8Array[]} pieces */
+/** Saves a recording and removes the oldest ones if needed. Returns the ids of all saved recordings. @param {Saved} recording @param {Uint8Array[]} pieces */
 export function store(recording, pieces) {
   return withDatabase(async (database) => {
-    const transaction = database.transaction([FACTS, PIECES], "readwrite");
+    const transaction = database.transaction([RECORDINGS, PIECES], "readwrite");
     const done = completed(transaction);
     // The requests below report the same failure.
     done.catch(() => {});
-    const [facts, stores] = [FACTS, PIECES].map((name) => transaction.objectStore(name));
-    const { staying, leaving } = makeRoom(await result(facts.getAll()), recording);
+    const [recordings, pieceStore] = [RECORDINGS, PIECES].map((name) => transaction.objectStore(name));
+    const { staying, leaving } = makeRoom(await result(recordings.getAll()), recording);
     for (const id of leaving) {
-      facts.delete(id);
-      stores.delete(piecesOf(id));
+      recordings.delete(id);
+      pieceStore.delete(piecesOf(id));
     }
-    facts.put(recording);
-    // One at a time: copies of all would stop the page.
-    for (const [number, piece] of pieces.entries()) await result(stores.put(piece, [recording.id, number]));
+    recordings.put(recording);
+    // One at a time: copying all at once would block the page.
+    for (const [number, piece] of pieces.entries()) await result(pieceStore.put(piece, [recording.id, number]));
     await done;
     return [...staying, recording.id];
   });
 }
 
 /** @param {IDBDatabase} database @returns {Promise<Saved[]>} */
-export const list = (database) => result(database.transaction(FACTS).objectStore(FACTS).getAll());
+export const list = (database) => result(database.transaction(RECORDINGS).objectStore(RECORDINGS).getAll());
 
 /** @param {IDBDatabase} database @param {string} id */
 export function remove(database, id) {
-  const transaction = database.transaction([FACTS, PIECES], "readwrite");
-  transaction.objectStore(FACTS).delete(id);
+  const transaction = database.transaction([RECORDINGS, PIECES], "readwrite");
+  transaction.objectStore(RECORDINGS).delete(id);
   transaction.objectStore(PIECES).delete(piecesOf(id));
   return completed(transaction);
 }
 
-/** Its records; null where they are damaged. @param {IDBDatabase} database @param {string} id @param {number[]} sizes */
+/** The records of a recording; null if they are damaged. @param {IDBDatabase} database @param {string} id @param {number[]} sizes */
 export async function load(database, id, sizes) {
   const pieces = [];
   let last = -1;

@@ -3,7 +3,7 @@ import { button, element } from "../../dom.js";
 
 /** @typedef {ReturnType<typeof openDialog>} Dialog */
 
-/** @param {() => void} release  Called when it closes, unless its file is still needed. */
+/** @param {() => void} release  Called when the dialog closes, unless its file is still needed. */
 export function openDialog(release) {
   const close = (isNeeded = false) => {
     if (!isNeeded) release();

@@ -1,16 +1,16 @@
-/** Where a recording differs from the baseline: a button next to “recording” opens a table whose times are buttons. */
+/** The differences of a recording from the baseline: a button next to “recording” opens a table with links to their times. */
 import { button, byId, element, fill } from "../../dom.js";
 import { count, counted, time } from "../../state/number.js";
-import { showPlace } from "../notices.js";
-import { around } from "../verdict.js";
+import { showLocation } from "../notices.js";
+import { locationAround } from "../sender_comparison.js";
 
-/** Rows of the table; the command writes all. */
+/** Maximum rows of the table; the command writes all. */
 const MAX_ROWS = 10;
 
 /** @typedef {{recorded: number, rows: {text: string, recorded_s: number}[], differences: {count: number}}} Found */
 
 /**
- * Adds the button, unless there is no difference. Returns how to take it away.
+ * Adds the button if there are differences. Returns how to remove it.
  * @param {import("../../state/types.js").Page} page @param {Found} found
  */
 export function offerDifferences(page, { rows, recorded, differences }) {
@@ -25,7 +25,7 @@ export function offerDifferences(page, { rows, recorded, differences }) {
     const listed = rows.slice(0, MAX_ROWS).map(({ text, recorded_s }) => {
       const at = button(time(recorded_s), `Go to ${time(recorded_s)}: ${text}`, () => {
         close();
-        go(recorded_s);
+        showTime(recorded_s);
       });
       return element("tr", {}, element("td", {}, at), element("td", {}, text));
     });
@@ -49,13 +49,13 @@ export function offerDifferences(page, { rows, recorded, differences }) {
   }
 
   /** @param {number} at_s */
-  function go(at_s) {
+  function showTime(at_s) {
     const { result } = page.now();
     if (!result) return;
     const { clock_hz, end_cycle } = result.summary;
     const cycle = Math.round(at_s * clock_hz);
-    const air = Math.round((4 * end_cycle) / Math.max(1, recorded));
-    const place = around(cycle - air, cycle + air, end_cycle, result.controller);
-    showPlace(page, { ...place, cycle });
+    const margin = Math.round((4 * end_cycle) / Math.max(1, recorded));
+    const location = locationAround(cycle - margin, cycle + margin, end_cycle, result.controller);
+    showLocation(page, { ...location, cycle });
   }
 }

@@ -2,12 +2,12 @@
 import { element } from "../../dom.js";
 import { parseNumber } from "../../state/parse_number.js";
 
-/** Largest number that a field takes: what the core has room for. */
+/** Maximum value of a field: that of the core's 32-bit numbers. */
 const MAX = 2 ** 32 - 1;
 
 /**
- * A field, its label and its error: of what is typed, or of what the core reports of it.
- * @param {string} name @param {string} unit @param {HTMLInputElement | HTMLSelectElement} input @param {() => string} check  What is wrong with it.
+ * A field with its label and an error, which is set by a check of the text or by the core.
+ * @param {string} name @param {string} unit @param {HTMLInputElement | HTMLSelectElement} input @param {() => string} check  Returns the error; empty if there is none.
  */
 function labeled(name, unit, input, check) {
   const id = `recording-${name.toLowerCase().replaceAll(" ", "-")}`;
@@ -20,23 +20,23 @@ function labeled(name, unit, input, check) {
   };
   input.addEventListener("input", () => fail(check()));
   const label = element("div", {}, element("label", { for: id }, `${name}${unit && ", "}${unit} `), input, error);
-  return { label, fail, isWrong: () => check() !== "" };
+  return { label, fail, isInvalid: () => check() !== "" };
 }
 
 /** @param {string} placeholder */
-const typed = (placeholder) => element("input", { type: "text", placeholder, size: "16" });
+const textInput = (placeholder) => element("input", { type: "text", placeholder, size: "16" });
 
-/** A whole number that may be left empty. @param {string} name @param {string} unit @param {string} empty @param {number} [least] */
-export function numberField(name, unit, empty, least = 1) {
-  const input = typed(empty);
+/** A whole number that may be left empty. @param {string} name @param {string} unit @param {string} empty  Placeholder of an empty field. @param {number} [min] */
+export function numberField(name, unit, empty, min = 1) {
+  const input = textInput(empty);
   /** @returns {{value: number} | {message: string}} */
   const read = () => {
     if (input.value.trim() === "") return { value: 0 };
     const read = parseNumber(input.value, unit, { integer: true });
-    const fits = "message" in read || (read.value >= least && read.value <= MAX);
+    const fits = "message" in read || (read.value >= min && read.value <= MAX);
     return fits
       ? read
-      : { message: `${input.value.trim()} is out of range; use ${least} to ${MAX}${unit && " "}${unit}.` };
+      : { message: `${input.value.trim()} is out of range; use ${min} to ${MAX}${unit && " "}${unit}.` };
   };
   const check = () => {
     const found = read();
@@ -56,7 +56,7 @@ export function numberField(name, unit, empty, least = 1) {
 
 /** A time that may be left empty. @param {string} name @param {string} empty */
 export function timeField(name, empty) {
-  const input = typed(empty);
+  const input = textInput(empty);
   /** @returns {{value: number | null} | {message: string}} */
   const read = () => {
     if (input.value.trim() === "") return { value: null };
@@ -94,7 +94,7 @@ export function textField(name, placeholder) {
   };
 }
 
-/** One of several values, the first by itself. @param {string} name @param {[string, string][]} values */
+/** A choice; the first value is the default. @param {string} name @param {[string, string][]} values */
 export function choiceField(name, values) {
   const input = element("select", {}, ...values.map(([value, text]) => element("option", { value }, text)));
   return {

@@ -1,5 +1,5 @@
 /** Options of the dialog of a recording: channel map, rates, visible part, comparison. */
-import { button, element, say } from "../../dom.js";
+import { button, element, setText } from "../../dom.js";
 import { createChannelTable } from "./channel_table.js";
 import { choiceField, numberField, timeField } from "./fields.js";
 import { createOverview } from "./overview.js";
@@ -11,16 +11,16 @@ import { emptyBaud, FORMATS, hasMap, needsRate, requestOf, shownFields } from ".
 
 /**
  * @param {Facts} facts @param {Parameters<typeof createOverview>[0]} capture
- * @param {boolean} hasPlan  Whether the experiment can be compared with. @param {() => void} changed
+ * @param {boolean} hasPlan  Whether there is a run to compare with. @param {() => void} onChange
  */
-export function createOptions(facts, capture, hasPlan, changed) {
+export function createOptions(facts, capture, hasPlan, onChange) {
   const table = createChannelTable(facts.channels);
   const mapError = element("p", { class: "error", "aria-live": "polite" });
   const rate = numberField("Sample rate", "Hz", "required");
   const baud = numberField("Bit rate", "baud", emptyBaud(facts));
   const uart = choiceField("Serial format", FORMATS);
   const clock = numberField("Clock", "Hz", "from the file");
-  const from = timeField("Show from", "its beginning");
+  const from = timeField("Show from", "its start");
   const to = timeField("Show up to", "maximum length");
   const align = numberField("Aligned by step", "", "0, the first", 0);
   const fields = [rate, baud, uart, clock];
@@ -28,7 +28,7 @@ export function createOptions(facts, capture, hasPlan, changed) {
   const compares = element("input", { id: "recording-compare", type: "checkbox", ...(hasPlan ? { checked: "" } : {}) });
   const compare = element("label", { class: "check" }, compares, ` Compare with this experiment`);
   let choosesPart = false;
-  const choosePart = button("Show a part…", "Show a part, from one time to another", () => {
+  const choosePart = button("Show a part…", "Show a part: enter its start and end", () => {
     choosesPart = true;
     show();
     from.label.querySelector("input")?.focus();
@@ -36,17 +36,17 @@ export function createOptions(facts, capture, hasPlan, changed) {
   const overview = createOverview(capture, (part) => {
     from.set(part?.from_s ?? null);
     to.set(part?.to_s ?? null);
-    changed();
+    onChange();
   });
-  /** Where an error is shown, by the field that it names. @type {{[field: string]: (message: string) => void}} */
+  /** How to show an error, by the name of its field. @type {{[field: string]: (message: string) => void}} */
   const errors = {
-    map: (text) => say(mapError, text),
+    map: (text) => setText(mapError, text),
     clock_hz: clock.fail,
     sample_rate_hz: rate.fail,
     baud: baud.fail,
     uart: uart.fail,
   };
-  /** The preview that the options are of. @type {Preview | null} */
+  /** The preview with these options. @type {Preview | null} */
   let preview = null;
 
   function show() {
@@ -92,29 +92,29 @@ export function createOptions(facts, capture, hasPlan, changed) {
         baud: !baud.label.hidden,
         uart: !uart.label.hidden,
       }),
-    isWrong: () =>
-      table.isWrong() || [...fields, from, to, align].some(({ label, isWrong }) => !label.hidden && isWrong()),
+    isInvalid: () =>
+      table.isInvalid() || [...fields, from, to, align].some(({ label, isInvalid }) => !label.hidden && isInvalid()),
     /** Whether a channel has to be selected first. */
     needsMap: () => facts.has_levels && table.map() === "",
-    /** The step that both have at one time; null where the experiment is not compared. */
+    /** The step or byte by which both are aligned; null if they are not compared. */
     alignedStep: () => (align.label.hidden ? null : align.value()),
     /** @param {number} hz */
     setClock: (hz) => clock.set(hz),
     /** @param {string} map */
-    setMap: (map) => table.put(map),
-    /** @param {Values} given */
-    restore(given) {
+    setMap: (map) => table.setMap(map),
+    /** @param {Values} earlier */
+    restore(earlier) {
       for (const [field, value] of /** @type {[typeof clock, number][]} */ ([
-        [clock, given.clock],
-        [rate, given.rate],
-        [baud, given.baud],
+        [clock, earlier.clock],
+        [rate, earlier.rate],
+        [baud, earlier.baud],
       ]))
         if (value) field.set(value);
-      uart.set(given.uart);
-      from.set(given.from_s);
-      to.set(given.to_s);
+      uart.set(earlier.uart);
+      from.set(earlier.from_s);
+      to.set(earlier.to_s);
     },
-    /** Shows a preview, or none. @param {Preview | null} found */
+    /** Shows a preview; null clears it. @param {Preview | null} found */
     render(found) {
       preview = found;
       overview.render(facts.has_levels ? found : null);
@@ -123,7 +123,7 @@ export function createOptions(facts, capture, hasPlan, changed) {
     clearErrors() {
       for (const fail of Object.values(errors)) fail("");
     },
-    /** Whether there is a field for the error. @param {string} field @param {string} text */
+    /** Shows an error at its field. Returns whether there is such a field. @param {string} field @param {string} text */
     fail(field, text) {
       if (field === "sample_rate_hz") rate.label.hidden = false;
       errors[field]?.(text);

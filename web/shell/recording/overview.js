@@ -1,23 +1,23 @@
 /** The overview of a recording in its dialog. Dragging selects the visible part. */
 import { element, fill } from "../../dom.js";
+import { errorMessage } from "../../state/error_message.js";
 import { plain, time } from "../../state/number.js";
-import { message } from "../link.js";
 
 /** @typedef {import("../../engine/capture.js").Preview} Preview */
 /** @typedef {import("../../engine/capture.js").Columns} Columns */
 
-/** Heights of the position's and the speed's band and of what is between, in CSS pixels. */
+/** Heights of the position band, the speed band and the gap between them, in CSS pixels. */
 const [POSITION_PX, SPEED_PX, BETWEEN_PX] = [64, 40, 6];
-/** A press that moves no further is no drag, in CSS pixels. */
-const STILL_PX = 4;
-/** How much of what is left out is seen through. */
-const LEFT_OUT = 0.7;
-/** Rest after a change of the width before other columns are requested, in ms. */
-const REST_MS = 200;
+/** Minimum length of a drag, in CSS pixels. */
+const MIN_DRAG_PX = 4;
+/** Opacity of the cover over the parts that are not selected. */
+const COVER_OPACITY = 0.7;
+/** Delay after a change of the width before new columns are requested, in ms. */
+const RESIZE_DELAY_MS = 200;
 
 /**
  * @param {{overview: (channel: number, columns: number) => Promise<Columns | null>}} capture
- * @param {(part: {from_s: number, to_s: number} | null) => void} choose  Null for all of it.
+ * @param {(part: {from_s: number, to_s: number} | null) => void} choose  Selects a part; null selects all.
  */
 export function createOverview(capture, choose) {
   const canvas = element("canvas", { role: "img" });
@@ -27,18 +27,18 @@ export function createOverview(capture, choose) {
   const channel = element("select", { "aria-label": "Channel overview" });
   const node = element("div", { class: "whole" }, channel, canvas, caption);
   node.hidden = true;
-  /** What was looked at. @type {Preview | null} */
+  /** @type {Preview | null} */
   let preview = null;
-  /** What the columns are of, and how many were requested. */
-  let [shown, askedColumns] = ["", 0];
+  /** Key and number of the last requested columns. */
+  let [requestedKey, requestedCount] = ["", 0];
   /** @type {Columns | null} */
   let columns = null;
   let timer = 0;
-  /** Where a drag began and where it is, in s. @type {[number, number] | null} */
+  /** Start and current end of a drag, in s. @type {[number, number] | null} */
   let drag = null;
 
   const end = () => preview?.part?.end_s ?? preview?.end_s ?? 0;
-  /** The time under a pointer, to a pixel's digits. @param {PointerEvent} event */
+  /** The time under a pointer, rounded to the resolution of a pixel. @param {PointerEvent} event */
   const at = ({ clientX }) => {
     const { left, width } = canvas.getBoundingClientRect();
     const digits = Math.min(9, Math.max(0, Math.ceil(-Math.log10(end() / width))));
@@ -58,63 +58,63 @@ export function createOverview(capture, choose) {
     if (!drag) return;
     const [from_s, to_s] = drag.sort((a, b) => a - b);
     drag = null;
-    const isStill = ((to_s - from_s) / end()) * canvas.clientWidth < STILL_PX;
-    choose(isStill ? null : { from_s, to_s });
+    const isClick = ((to_s - from_s) / end()) * canvas.clientWidth < MIN_DRAG_PX;
+    choose(isClick ? null : { from_s, to_s });
   });
   canvas.addEventListener("pointercancel", () => {
     drag = null;
     draw();
   });
   channel.addEventListener("input", (event) => {
-    // It changes what is drawn, not what is asked.
+    // It changes only the drawing, not the options of the preview.
     event.stopPropagation();
     void refresh();
   });
   new ResizeObserver(() => {
     draw();
     clearTimeout(timer);
-    timer = window.setTimeout(() => void refresh(), REST_MS);
+    timer = window.setTimeout(() => void refresh(), RESIZE_DELAY_MS);
   }).observe(canvas);
 
-  /** Requests the columns, if these are others. */
+  /** Requests the columns again if they have changed. */
   async function refresh() {
     const width = canvas.clientWidth;
     if (!preview || width === 0) return;
-    // The sample rate and the end of the file are in the time of its end.
-    const own = [preview.map, preview.clock_hz, end(), channel.value].join();
-    if (own === shown && width === askedColumns) return draw();
-    // Until they come, those of another width stand for them, but none of anything else.
-    if (own !== shown) [columns, caption.textContent] = [null, "…"];
-    [shown, askedColumns] = [own, width];
+    // A change of the sample rate changes the end time.
+    const key = [preview.map, preview.clock_hz, end(), channel.value].join();
+    if (key === requestedKey && width === requestedCount) return draw();
+    // Until they arrive, columns of another width are shown, but none of another channel or map.
+    if (key !== requestedKey) [columns, caption.textContent] = [null, "…"];
+    [requestedKey, requestedCount] = [key, width];
     draw();
-    const isOwn = () => own === shown && width === askedColumns;
+    const isCurrent = () => key === requestedKey && width === requestedCount;
     try {
       const found = await capture.overview(Number(channel.value), width);
-      if (!isOwn()) return;
+      if (!isCurrent()) return;
       columns = found;
       draw();
       describe();
     } catch (error) {
-      if (!isOwn()) return;
-      [columns, shown] = [null, ""];
+      if (!isCurrent()) return;
+      [columns, requestedKey] = [null, ""];
       draw();
-      say(`The overview of channel ${channel.value} cannot be shown: ${message(error)}.`, true);
+      showCaption(`The overview of channel ${channel.value} cannot be requestedKey: ${errorMessage(error)}.`, true);
     }
   }
 
-  /** @param {string} what @param {boolean} isWrong */
-  function say(what, isWrong) {
-    canvas.setAttribute("aria-label", what);
-    caption.classList.toggle("error", isWrong);
-    caption.textContent = isWrong ? what : `${what} Drag to select a part.`;
+  /** @param {string} text @param {boolean} isError */
+  function showCaption(text, isError) {
+    canvas.setAttribute("aria-label", text);
+    caption.classList.toggle("error", isError);
+    caption.textContent = isError ? text : `${text} Drag to select a part.`;
   }
 
   function describe() {
     if (!columns) return;
     const [low, high] = rangeOf([columns.position_min, columns.position_max]);
     const speeds = rangeOf([columns.speed_min, columns.speed_max]).map(Math.abs);
-    const what = `Channel ${channel.value}, ${time(end())}: position ${plain(low, "").trim()} to ${plain(high, "steps")}, at most ${plain(Math.max(...speeds), "steps/s")}.`;
-    say(what, false);
+    const text = `Channel ${channel.value}, ${time(end())}: position ${plain(low, "").trim()} to ${plain(high, "steps")}, maximum ${plain(Math.max(...speeds), "steps/s")}.`;
+    showCaption(text, false);
   }
 
   function draw() {
@@ -134,7 +134,7 @@ export function createOverview(capture, choose) {
       : preview?.part && [preview.part.from_s, preview.part.to_s];
     if (!part) return;
     const [from, to] = part.map((at_s) => (at_s / end()) * width);
-    pen.globalAlpha = LEFT_OUT;
+    pen.globalAlpha = COVER_OPACITY;
     pen.fillStyle = ink("--pane");
     pen.fillRect(0, 0, from, height);
     pen.fillRect(to, 0, width - to, height);
@@ -145,7 +145,7 @@ export function createOverview(capture, choose) {
 
   return {
     node,
-    /** @param {Preview | null} found  What was looked at; none, or no step in it, leaves nothing to see. */
+    /** @param {Preview | null} found  Without a preview or steps the overview is hidden. */
     render(found) {
       preview = found;
       node.hidden = !found || found.steps.length === 0;
@@ -162,14 +162,14 @@ export function createOverview(capture, choose) {
   };
 }
 
-/** Minimum and maximum of all. @param {number[][]} all @returns {number[]} */
+/** Minimum and maximum of all values and 0. @param {number[][]} all @returns {number[]} */
 function rangeOf(all) {
   const values = all.flat().filter(Number.isFinite);
   return [values.reduce((a, b) => Math.min(a, b), 0), values.reduce((a, b) => Math.max(a, b), 0)];
 }
 
 /**
- * A column a pixel, from its least to its greatest value.
+ * Draws columns from their minimum to their maximum.
  * @param {CanvasRenderingContext2D} pen @param {number[]} min @param {number[]} max
  * @param {{width: number, top: number, high: number, ink: string}} place
  */

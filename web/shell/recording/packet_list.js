@@ -5,14 +5,14 @@ import { MAX_PACKETS, packetCells, packetsFile, packetsText } from "./texts.js";
 
 /**
  * @param {string} file  Its name.
- * @param {(most: number) => Promise<{packets: import("../../engine/capture.js").LinePackets, clock_hz: number} | null>} load
- * @param {(error: unknown) => void} refuse
+ * @param {(maxRows: number) => Promise<{packets: import("../../engine/capture.js").LinePackets, clock_hz: number} | null>} load
+ * @param {(error: unknown) => void} showError
  */
-export function createPacketList(file, load, refuse) {
+export function createPacketList(file, load, showError) {
   const node = element("details", { class: "packet-list" });
   node.hidden = true;
   node.addEventListener("toggle", () => {
-    if (node.open) void list().catch(refuse);
+    if (node.open) void list().catch(showError);
   });
 
   async function list() {
@@ -20,11 +20,11 @@ export function createPacketList(file, load, refuse) {
     if (!found || !node.open) return;
     const { packets, clock_hz } = found;
     const name = packetsFile(file);
-    const all = button("Save all (CSV)", `Save all packets: ${name}`, () => save(name, "text/csv", [packets.csv]));
+    const saveAll = button("Save all (CSV)", `Save all packets: ${name}`, () => save(name, "text/csv", [packets.csv]));
     fill(
       node,
       element("summary", {}, "Packets"),
-      element("p", {}, packetsText(packets), all),
+      element("p", {}, packetsText(packets), saveAll),
       grid(
         ["Line", "from", "bytes", "meaning"],
         packets.rows.map((row) => packetCells(row, clock_hz)),

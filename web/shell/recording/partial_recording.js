@@ -1,21 +1,21 @@
-/** Keeps the file of a partly shown recording open, to show another part. */
+/** Keeps the file of a partly shown recording open, so that another part can be shown. */
 import { button, byId } from "../../dom.js";
 import { openDialog } from "./dialog.js";
 import { scenarioKey } from "./saved_recordings.js";
 
 /** @typedef {import("../../state/types.js").Page} Page */
 
-/** `drop` takes its button away; `close` closes the file, too. @type {{drop: () => void, close: () => void} | null} */
+/** `drop` removes its button; `close` also closes the file. @type {{drop: () => void, close: () => void} | null} */
 let open = null;
 
-/** Calls back once the experiment is another one. Returns how to stop that. @param {Page} page @param {() => void} changed */
-export function whileShown({ now }, changed) {
+/** Calls back once when the experiment is replaced. Returns how to cancel that. @param {Page} page @param {() => void} onReplaced */
+export function onceReplaced({ now }, onReplaced) {
   const own = scenarioKey(now().scenario);
   // The page updates this attribute whenever its experiment changes.
   const watch = new MutationObserver(() => {
     if (scenarioKey(now().scenario) === own) return;
     watch.disconnect();
-    changed();
+    onReplaced();
   });
   watch.observe(document.documentElement, { attributeFilter: ["data-state"] });
   return () => watch.disconnect();
@@ -27,7 +27,7 @@ export function closeOpenFile() {
 }
 
 /**
- * Keeps a file open while the experiment stays, with a button that opens its dialog again.
+ * Keeps a file open until the experiment is replaced, with a button that opens its dialog again.
  * @param {Page} page @param {string} file  Its name. @param {{close: () => void}} capture @param {(dialog: import("./dialog.js").Dialog) => void} show
  */
 export function holdOpen(page, file, capture, show) {
@@ -38,7 +38,7 @@ export function holdOpen(page, file, capture, show) {
     closeDialog = dialog.close;
     show(dialog);
   });
-  const stop = whileShown(page, closeOpenFile);
+  const stop = onceReplaced(page, closeOpenFile);
   const drop = () => {
     stop();
     again.remove();

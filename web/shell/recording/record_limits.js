@@ -1,10 +1,10 @@
-/** How many recordings this device saves, and whether saved records are still those of a recording. */
+/** Limits of saved recordings, and a check of their records. */
 
 /** @typedef {{id: string, file: string, scenario: string, sizes: number[], replies?: Uint8Array}} Saved  `sizes` are the bytes of its pieces of records. */
 
 /** Maximum bytes of all saved recordings; the oldest are removed first. */
 export const MAX_BYTES = 160_000_000;
-/** Maximum number of recordings: the engine holds as many for undo. */
+/** Maximum number of recordings, as many as the engine stores for undo. */
 const MAX_RECORDINGS = 3;
 /** A record: cycle and levels, of eight bytes each. */
 export const RECORD_BYTES = 16;
@@ -17,12 +17,12 @@ const MAX_UPPER_LEVELS = 0xf;
 export const sizeOf = ({ sizes, replies }) => sizes.reduce((sum, size) => sum + size, replies?.byteLength ?? 0);
 
 /**
- * The saved recordings that stay when another one is added, the oldest first, and those that have to go.
+ * The saved recordings that stay when another one is added, oldest first, and those that are removed.
  * @param {Saved[]} saved @param {Saved} added
  */
 export function makeRoom(saved, added) {
   let left = MAX_BYTES - sizeOf(added);
-  let places = MAX_RECORDINGS - 1;
+  let count = MAX_RECORDINGS - 1;
   /** @type {string[]} */
   const staying = [];
   /** @type {string[]} */
@@ -30,15 +30,15 @@ export function makeRoom(saved, added) {
   // An id begins with the time at which it was saved.
   for (const each of saved.toSorted((one, other) => (one.id < other.id ? 1 : -1))) {
     left -= Array.isArray(each.sizes) ? sizeOf(each) : MAX_BYTES;
-    if (places-- > 0 && left >= 0) staying.unshift(each.id);
+    if (count-- > 0 && left >= 0) staying.unshift(each.id);
     else leaving.push(each.id);
   }
   return { staying, leaving };
 }
 
 /**
- * The cycle of a piece's last record; null where the piece does not hold records with rising cycles.
- * @param {unknown} piece @param {number} size  Its bytes as they were saved. @param {number} before  The last cycle of the piece before.
+ * The cycle of the last record of a piece; null if the piece has no records with increasing cycles.
+ * @param {unknown} piece @param {number} size  Its saved size in bytes. @param {number} before  The last cycle of the previous piece.
  */
 export function lastCycle(piece, size, before) {
   if (!(piece instanceof Uint8Array) || piece.length !== size || size % RECORD_BYTES !== 0) return null;

@@ -1,13 +1,14 @@
-/** The dialog of a recording: its contents, the signals of its channels, and the resulting figures. */
+/** The dialog of a recording: its content, the signals of its channels, and the resulting figures. */
 import { button, element, fill } from "../../dom.js";
 import { openCapture } from "../../engine/capture.js";
+import { errorMessage } from "../../state/error_message.js";
 import { readJson } from "../../state/json.js";
 import { counted, si } from "../../state/number.js";
 import { isStale } from "../../state/queries.js";
-import { message } from "../link.js";
+import { awaitResult } from "../await_result.js";
 import { savedMap, saveMap } from "./channel_maps.js";
 import { openDialog } from "./dialog.js";
-import { alignment, baselineOf, importRecording, resultOf } from "./import_recording.js";
+import { alignment, baselineOf, importRecording } from "./import_recording.js";
 import { createOptions } from "./options.js";
 import { createPacketList } from "./packet_list.js";
 import { closeOpenFile, holdOpen } from "./partial_recording.js";
@@ -20,15 +21,15 @@ import { formatText, lengthText, partText, sentence, stepsText } from "./texts.j
 /** @typedef {import("./import_recording.js").Preview} Preview */
 /** @typedef {import("../../engine/capture.js").Facts} Facts */
 
-/** Rest after a change before the file is previewed again, in ms. */
-const REST_MS = 200;
-/** From this many changes on a preview takes a moment. */
-const MANY = 2_000_000;
+/** Delay after a change before the preview is updated, in ms. */
+const PREVIEW_DELAY_MS = 200;
+/** A preview of more changes takes so long that a message is shown. */
+const MANY_CHANGES = 2_000_000;
 
-/** @param {Page} page @param {File | string} source  Or the name of a sample. @param {import("../../engine/capture.js").ReadOptions} [options] */
+/** @param {Page} page @param {File | string} source  A file, or the name of a sample. @param {import("../../engine/capture.js").ReadOptions} [options] */
 export async function openRecording(page, source, options) {
-  const what = typeof source === "string" ? "" : ` ${source.name}, ${si(source.size, "B", 3)}`;
-  const about = element("p", { "aria-live": "polite" }, `Reading${what}…`);
+  const description = typeof source === "string" ? "" : ` ${source.name}, ${si(source.size, "B", 3)}`;
+  const about = element("p", { "aria-live": "polite" }, `Reading${description}…`);
   const bar = element("progress", { max: "1", value: "0", "aria-label": "Read" });
   const percent = element("p", { "aria-hidden": "true" });
   const report = (/** @type {number} */ part) => {
@@ -47,7 +48,7 @@ export async function openRecording(page, source, options) {
     if (sample) {
       const { scenario } = await page.engine.request("check", sample.scenario);
       page.dispatch({ type: "replace", scenario: readJson(scenario), origin: "shared" });
-      await resultOf(page);
+      await awaitResult(page);
     }
     if (!dialog.isOpen()) return;
     const again = (/** @type {import("../../engine/capture.js").ReadOptions} */ options) => {
@@ -72,21 +73,21 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
   const options = createOptions(facts, capture, planOf() !== null, () => body.dispatchEvent(new Event("input")));
   const packets = createPacketList(
     file,
-    async (most) => {
-      const found = preview && (await capture.packets(typeof now().scenario.line.address === "number", most));
+    async (maxRows) => {
+      const found = preview && (await capture.packets(typeof now().scenario.line.address === "number", maxRows));
       return found && { packets: found, clock_hz: preview?.clock_hz ?? 1 };
     },
-    (error) => refuse(message(error)),
+    (error) => showError(errorMessage(error)),
   );
   const result = element("div", { class: "recorded", "aria-live": "polite" });
-  const take = button(
+  const importButton = button(
     "Import",
     "Import: show the recording in all views",
-    () => void importIt().catch((error) => refuse(message(error))),
+    () => void runImport().catch((error) => showError(errorMessage(error))),
   );
-  take.className = "main";
-  foot.prepend(take);
-  /** What the file holds by these options; null where they are refused. @type {Preview | null} */
+  importButton.className = "main";
+  foot.prepend(importButton);
+  /** The preview with the current options; null if they are invalid. @type {Preview | null} */
   let preview = null;
   let timer = 0;
   /** Number of the last request; replies to older ones are dropped. */
@@ -103,8 +104,8 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
     element("p", {}, formatText(facts)),
     ...notes.map((note) => element("p", { class: "note" }, sentence(note))),
     ...readOptions(facts, reading, (error) => {
-      const text = `${file} cannot be opened: ${message(error)}`;
-      dispatch({ type: "notice", notice: { kind: "error", text, place: null } });
+      const text = `${file} cannot be opened: ${errorMessage(error)}`;
+      dispatch({ type: "notice", notice: { kind: "error", text, location: null } });
     }),
     ...options.nodes,
     result,
@@ -114,28 +115,28 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
   body.addEventListener("input", () => {
     clearTimeout(timer);
     options.show();
-    // The preview is of other options than these.
+    // The current preview no longer matches the options.
     request += 1;
-    take.disabled = true;
-    timer = window.setTimeout(() => void updatePreview(), REST_MS);
+    importButton.disabled = true;
+    timer = window.setTimeout(() => void updatePreview(), PREVIEW_DELAY_MS);
   });
   void updatePreview().then(() => {
-    const first = take.disabled ? options.missing(body) : take;
-    if (foot.contains(document.activeElement)) (first ?? take).focus();
+    const first = importButton.disabled ? options.missing(body) : importButton;
+    if (foot.contains(document.activeElement)) (first ?? importButton).focus();
   });
 
-  /** The run that a recording can be compared with. */
+  /** The run that the recording can be compared with, if any. */
   function planOf() {
     const { result } = now();
     return result && !isStale(now()) ? result : null;
   }
 
-  /** Previews the file by the options. @param {import("../../engine/capture.js").OpenRequest} aligned */
+  /** Updates the preview. @param {import("../../engine/capture.js").OpenRequest} aligned */
   async function updatePreview(aligned = {}) {
     const own = ++request;
-    take.disabled = true;
-    if (options.isWrong()) return;
-    if (facts.count > MANY) fill(result, element("p", {}, `Reading ${counted(facts.count, "change")}…`));
+    importButton.disabled = true;
+    if (options.isInvalid()) return;
+    if (facts.count > MANY_CHANGES) fill(result, element("p", {}, `Reading ${counted(facts.count, "change")}…`));
     try {
       if (facts.count === 0) throw new Error(facts.error ?? "it contains no recording");
       if (options.needsMap())
@@ -143,15 +144,15 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
       const found = await capture.preview({ ...aligned, ...options.request() });
       if (own !== request) return;
       showPreview(found);
-      take.disabled = false;
+      importButton.disabled = false;
     } catch (error) {
       if (own !== request) return;
-      refuse(message(error), /** @type {{field?: string}} */ (error).field);
+      showError(errorMessage(error), /** @type {{field?: string}} */ (error).field);
     }
   }
 
-  /** Shows an error under the field that has to be changed, or below all. @param {string} why @param {string} [field] */
-  function refuse(why, field = "") {
+  /** Shows an error at its field, or below all fields. @param {string} why @param {string} [field] */
+  function showError(why, field = "") {
     preview = null;
     options.render(null);
     packets.hide();
@@ -178,18 +179,18 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
     packets.reset(lines.length > 0);
   }
 
-  async function importIt() {
+  async function runImport() {
     clearTimeout(timer);
-    take.disabled = true;
-    // Bytes go to the controllers of the experiment before, by its clock.
-    const isReclocked = preview !== null && preview.lines.length > 0 && !options.values().clock;
-    if (isReclocked) options.setClock(now().scenario.clock_hz);
+    importButton.disabled = true;
+    // The bytes are sent to the controllers of the previous experiment, so they need its clock.
+    const usesExperimentClock = preview !== null && preview.lines.length > 0 && !options.values().clock;
+    if (usesExperimentClock) options.setClock(now().scenario.clock_hz);
     const aligned = options.alignedStep();
     const plan = aligned === null ? null : planOf();
     const compared = plan && { plan, baseline: await baselineOf(page, plan, aligned ?? 0) };
     const alignedBy = compared ? await alignment(capture, compared.baseline, preview) : {};
-    // Of very many changes a preview takes a moment.
-    if (isReclocked || compared) await updatePreview(alignedBy);
+    // Only if needed, because a preview of many changes takes long.
+    if (usesExperimentClock || compared) await updatePreview(alignedBy);
     if (!preview) return;
     const { map } = options.values();
     if (hasMap(facts) && map !== "") saveMap(facts.channels, map);
@@ -199,7 +200,7 @@ function show(page, file, capture, facts, { body, foot, close }, earlier = null,
         close(isPart);
         if (!isPart || !earlier) closeOpenFile();
         const own = options.values();
-        if (isPart) holdOpen(page, file, capture, (again) => show(page, file, capture, facts, again, own));
+        if (isPart) holdOpen(page, file, capture, (nextDialog) => show(page, file, capture, facts, nextDialog, own));
       },
     });
     if (problem) fill(result, element("p", { class: "error" }, problem));

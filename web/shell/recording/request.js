@@ -21,7 +21,7 @@ export const FORMATS = [
   ["7O2", "7O2"],
 ];
 
-/** Bases of written bytes, as of the command's `--base`. @type {[string, string][]} */
+/** Number bases of written bytes, as for the option `--base` of the command. @type {[string, string][]} */
 export const BASES = [
   ["", "detected from the digits"],
   ["hex", "hexadecimal"],
@@ -30,16 +30,16 @@ export const BASES = [
   ["bin", "binary"],
 ];
 
-/** Whether channels are mapped to signals: levels, and decoded bytes of several lines. @param {Facts} facts */
+/** Whether channels are mapped to signals: for levels, and for decoded bytes of several lines. @param {Facts} facts */
 export const hasMap = ({ has_levels, channels }) => has_levels || channels.length > 1;
 
-/** Whether the sample rate is required. Bytes without times follow each other at the bit rate. @param {Facts} facts */
+/** Whether the sample rate is required. It is not for bytes: without times they follow each other at the bit rate. @param {Facts} facts */
 export const needsRate = ({ has_times, has_bytes }) => !has_times && !has_bytes;
 
-/** The text of an empty bit rate. @param {Facts} facts */
+/** The placeholder of the bit rate. @param {Facts} facts */
 export const emptyBaud = ({ has_times, has_bytes }) => (has_times || !has_bytes ? "measured" : "required");
 
-/** Which fields are shown. A part of a recording is not compared with a run. @param {Facts} facts @param {Situation} situation */
+/** The visible fields. Only a whole recording can be compared with a run. @param {Facts} facts @param {Situation} situation */
 export function shownFields({ has_levels, has_bytes }, { hasLine, hasPlan, isPart, choosesPart, isCompared }) {
   const compare = hasPlan && !isPart;
   return {

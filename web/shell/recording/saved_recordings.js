@@ -1,6 +1,8 @@
 /** Saves the last imported recordings with their scenarios, so that a reload shows them again. */
+import { errorMessage } from "../../state/error_message.js";
 import { readJson } from "../../state/json.js";
 import { count } from "../../state/number.js";
+import { awaitAnyResult } from "../await_result.js";
 import { listedRecordings, listRecordings } from "../storage.js";
 import { list, load, remove, store, withDatabase } from "./database.js";
 import { MAX_BYTES, RECORD_BYTES, sizeOf } from "./record_limits.js";
@@ -8,19 +10,19 @@ import { MAX_BYTES, RECORD_BYTES, sizeOf } from "./record_limits.js";
 /**
  * @typedef {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} Page
  * @typedef {import("./record_limits.js").Saved} Saved
- * @typedef {{id: string, file: string, scenario: string, lost: string}} Known  A recording of this tab, and why it is not saved; "" where it is.
- * @typedef {{file: string, id: string, lost: string, isOwn: boolean}} Shown  The one that was visible when the page was left.
+ * @typedef {{id: string, file: string, scenario: string, lost: string}} Known  A recording of this tab. `lost`: why it is not saved; empty if it is.
+ * @typedef {{file: string, id: string, lost: string, isOwn: boolean}} Shown  The recording that was visible when the page was left.
  */
 
-/** Maximum time to wait for a first result, in ms, and the time between two looks for it. */
-const [MAX_WAIT_MS, POLL_MS] = [30_000, 100];
+/** Maximum time to wait for the first result, in ms. */
+const MAX_WAIT_MS = 30_000;
 /** The recording that the page showed when it was left; each tab has its own. */
 const SHOWN = "stepscope.recording";
 
 /** Recordings of this tab, the newest last. @type {Known[]} */
 const known = [];
 
-/** Identifies a scenario as the owner of a recording, as the worker does (worker.js). @param {any} scenario */
+/** The part of a scenario that identifies its recording, as in the worker (worker.js). @param {any} scenario */
 export const scenarioKey = ({ source, clock_hz, bus, run_cycles, plant }) =>
   JSON.stringify([source, clock_hz, bus?.channels, run_cycles, plant]);
 
@@ -35,16 +37,16 @@ function listed() {
 }
 
 /**
- * Saves a recording in place of the oldest ones, if there is room for it.
- * @param {Page} page @param {string} file  Its name. @param {string} scenario @param {Uint8Array[]} pieces  Of its records.
- * @param {Uint8Array} [replies]  Bytes of TX, where that was recorded.
- * @returns {Promise<string>}  Why it is not saved; empty where it is.
+ * Saves a recording, and removes the oldest ones if needed.
+ * @param {Page} page @param {string} file  Its name. @param {string} scenario @param {Uint8Array[]} pieces  Its records.
+ * @param {Uint8Array} [replies]  Bytes of TX, if that was recorded.
+ * @returns {Promise<string>}  Why it is not saved; empty if it is.
  */
 export async function saveRecording(page, file, scenario, pieces, replies) {
   const id = `${Date.now()}.${Math.random()}`;
   const recording = { id, file, scenario, sizes: pieces.map((piece) => piece.byteLength), replies };
   const lost = sizeOf(recording) > MAX_BYTES ? tooLarge(recording) : await stored(recording, pieces);
-  // The list makes a reload report that it is gone.
+  // With the list, a reload reports that the recording is no longer available.
   if (lost) listRecordings(JSON.stringify(listed()));
   known.push({ id, file, scenario, lost });
   watch(page);
@@ -62,16 +64,13 @@ async function stored(recording, pieces) {
       throw new Error("the list of recordings cannot be saved");
     return "";
   } catch (error) {
-    return `the browser cannot save it (${message(error)})`;
+    return `the browser cannot save it (${errorMessage(error)})`;
   }
 }
 
-/** @param {unknown} error */
-const message = (error) => (error instanceof Error && error.message ? error.message : String(error));
-
 /**
- * Gives the engine the saved recordings of this experiment, of those of undo and redo, and of the address. Shows the recording
- * that was visible and has no link. To be called before the first run.
+ * Sends the engine the saved recordings of this experiment, of the undo history and of the link in the address. Shows the
+ * recording that was visible, if it has no link. Must be called before the first run.
  * @param {Page} page
  */
 export async function restore(page) {
@@ -83,23 +82,20 @@ export async function restore(page) {
     lost ||= await withDatabase((database) => restoreFrom(page, database, before, shown));
     if (!lost && shown && !known.some(({ id }) => id === shown.id)) lost = "it was not saved";
   } catch (error) {
-    lost ||= `the browser cannot read it (${message(error)})`;
+    lost ||= `the browser cannot read it (${errorMessage(error)})`;
     listRecordings("[]");
   }
   if (!lost) return;
   const name = shown ? `The recording ${shown.file}` : "An earlier recording";
   const text = `${name} is no longer available: ${lost}. The views show the simulation; open the file again.`;
-  void firstResult(page).then(() => page.dispatch({ type: "notice", notice: { kind: "error", text, place: null } }));
-}
-
-/** Waits for a first result: a scenario from the address would remove the notice. @param {Page} page */
-async function firstResult({ now }) {
-  for (let waited = 0; waited < MAX_WAIT_MS && !now().result; waited += POLL_MS)
-    await new Promise((rested) => setTimeout(rested, POLL_MS));
+  // A scenario from the address would remove an earlier notice.
+  void awaitAnyResult(page, MAX_WAIT_MS).then(() =>
+    page.dispatch({ type: "notice", notice: { kind: "error", text, location: null } }),
+  );
 }
 
 /**
- * As `restore`; returns why something is lost, or "".
+ * Restores the recordings; returns why one is lost, or "".
  * @param {Page} page @param {IDBDatabase} database @param {string[]} before @param {Shown | null} shown
  */
 async function restoreFrom(page, database, before, shown) {
@@ -110,30 +106,30 @@ async function restoreFrom(page, database, before, shown) {
   const addressed = linked?.scenario ? scenarioKey(readJson(linked.scenario)) : null;
   if (addressed !== null) wanted.add(addressed);
   const all = await list(database);
-  const there = new Set(all.map(({ id }) => id));
-  let lost = before.some((id) => !there.has(id)) ? "its saved copy is gone" : "";
+  const available = new Set(all.map(({ id }) => id));
+  let lost = before.some((id) => !available.has(id)) ? "its saved copy is gone" : "";
   for (const { id, file, scenario, sizes, replies } of all) {
     const isShown = shown?.id === id;
-    // An earlier version may have saved it, so the core upgrades it.
-    const own = await engine.request("check", String(scenario));
-    const read = readJson(own.scenario);
+    // The core upgrades it if an earlier version saved it.
+    const checked = await engine.request("check", String(scenario));
+    const read = readJson(checked.scenario);
     if (!isShown && !wanted.has(scenarioKey(read))) continue;
-    const pieces = own.problems.length === 0 && Array.isArray(sizes) ? await load(database, id, sizes) : null;
+    const pieces = checked.problems.length === 0 && Array.isArray(sizes) ? await load(database, id, sizes) : null;
     if (!pieces) {
       lost ||= `the saved copy of ${file} is damaged`;
       await remove(database, id);
-      there.delete(id);
+      available.delete(id);
       continue;
     }
-    engine.record(own.scenario, pieces, replies instanceof Uint8Array ? replies : undefined);
-    known.push({ id, file, scenario: own.scenario, lost: "" });
+    engine.showRecording(checked.scenario, pieces, replies instanceof Uint8Array ? replies : undefined);
+    known.push({ id, file, scenario: checked.scenario, lost: "" });
     if (isShown && !shown.isOwn && scenarioKey(read) !== addressed) {
-      // The address is of an earlier experiment: this one has no link, or the page was left before the address followed.
+      // The link in the address is of an earlier experiment, so it is removed.
       history.replaceState(null, "", location.pathname + location.search);
       dispatch({ type: "replace", scenario: read, origin: "shared" });
     }
   }
-  if (lost) listRecordings(JSON.stringify([...there]));
+  if (lost) listRecordings(JSON.stringify([...available]));
   return lost;
 }
 
@@ -150,7 +146,7 @@ function shownBefore() {
 
 let isWatched = false;
 
-/** Notes which recording is visible when the page is left. @param {Page} page */
+/** Saves which recording is visible when the page is left. @param {Page} page */
 function watch({ now }) {
   if (isWatched) return;
   isWatched = true;
@@ -163,7 +159,7 @@ function watch({ now }) {
       const { file, id, lost } = found;
       sessionStorage.setItem(SHOWN, JSON.stringify({ file, id, lost, isOwn: origin === "own" }));
     } catch {
-      // Private windows and full disks refuse; the recording then has to be opened again.
+      // Private windows and full disks reject this; the recording then has to be opened again.
     }
   });
 }

@@ -1,7 +1,7 @@
-/** Texts of the dialog of a recording, and the scenario of a recording. */
+/** Texts of the dialog of a recording, and its scenario. */
 import { readJson } from "../../state/json.js";
 import { count, counted, plain, si, time } from "../../state/number.js";
-import { around } from "../verdict.js";
+import { locationAround } from "../sender_comparison.js";
 
 /** @typedef {import("../../engine/capture.js").Facts} Facts */
 /** @typedef {import("../../engine/capture.js").Preview} Preview */
@@ -15,15 +15,15 @@ import { around } from "../verdict.js";
  *   missing: number, extra: number, differences: {count: number}, rows: {text: string, recorded_s: number}[]}} Comparison
  */
 
-/** Packets that the dialog lists; the file has all. */
+/** Maximum packets in the dialog; the file has all. */
 export const MAX_PACKETS = 100;
-/** Bytes of a packet that the dialog lists. */
+/** Maximum bytes of a packet in the dialog. */
 const MAX_BYTES = 32;
-/** Maximum drift that is reported: clocks further apart ran another motion. */
+/** Maximum drift that is reported; a larger one means a different motion. */
 const MAX_DRIFT_PPM = 50_000;
-/** Differences from the baseline that a message names. */
+/** Maximum differences in a message. */
 const MAX_DIFFERENCES = 3;
-/** Characters that a note can have; a longer one would be refused. */
+/** Maximum characters of a note. */
 const MAX_NOTE = 2000;
 
 /** A message of the core as a sentence. @param {string} text */
@@ -36,7 +36,7 @@ export function formatText({ format, count, has_levels, has_bytes }) {
   return `${format}, ${counted(count, has_levels ? "change" : has_bytes ? "byte" : "row")}`;
 }
 
-/** The visible part of a recording that is not shown whole. @param {NonNullable<Preview["part"]>} part */
+/** The visible part of a longer recording. @param {NonNullable<Preview["part"]>} part */
 export function partText({ from_s, to_s, end_s, records, of }) {
   return `Shown: ${time(from_s)} to ${time(to_s)} of ${time(end_s)}, ${count(records)} of ${counted(of, "change")}`;
 }
@@ -50,9 +50,9 @@ export function lengthText({ clock_hz, rounding, end_s, part }) {
 export function stepsText({ channel, figures }) {
   const { steps, right, left, first_s, last_s, shortest_at_s } = figures;
   const { greatest_rate_steps_s: rate, greatest_acceleration_steps_s2: acceleration } = figures;
-  const peak = rate ? `; at most ${plain(rate, "steps/s")}, at ${time(shortest_at_s ?? 0)}` : "";
-  const steepest = acceleration ? `, and ${plain(acceleration, "steps/s²")}` : "";
-  return `Channel ${channel}: ${counted(steps, "step")}, ${count(right)} right and ${count(left)} left, ${time(first_s)} to ${time(last_s)}${peak}${steepest}.`;
+  const peak = rate ? `; maximum rate ${plain(rate, "steps/s")} at ${time(shortest_at_s ?? 0)}` : "";
+  const steepest = acceleration ? `, maximum acceleration ${plain(acceleration, "steps/s²")}` : "";
+  return `Channel ${channel}: ${counted(steps, "step")}, ${count(right)} right and ${count(left)} left, from ${time(first_s)} to ${time(last_s)}${peak}${steepest}.`;
 }
 
 /** @param {string} file */
@@ -60,7 +60,7 @@ export const packetsFile = (file) => `${file.replace(/\.[^.]*$/, "")}-packets.cs
 
 /** @param {LinePackets} packets */
 export function packetsText({ total, replies, rows }) {
-  const more = total > rows.length ? `; the first ${count(rows.length)} of them:` : ":";
+  const more = total > rows.length ? `; the first ${count(rows.length)}:` : ":";
   return `${counted(total, "packet")}, ${count(replies)} complete frames of the device${more} `;
 }
 
@@ -72,16 +72,16 @@ export function packetCells({ line, kind, start_cycle, bytes, meaning, outcome }
   return [`${line} ${kind}`, time(start_cycle / clock_hz), hex, parts.join("; ")];
 }
 
-/** Each step, or byte, compared with the baseline's, in one paragraph. @param {Comparison} comparison @param {number} aligned */
+/** The comparison of steps or bytes with the baseline as text. @param {Comparison} comparison @param {number} aligned */
 export function comparisonText(comparison, aligned) {
   const { kind, differing, largest, rms_s, other_values } = comparison;
-  const one = kind.slice(0, -1);
-  const by = aligned > 0 ? `, aligned by ${one} ${count(aligned)}` : "";
+  const noun = kind.slice(0, -1);
+  const by = aligned > 0 ? `, aligned by ${noun} ${count(aligned)}` : "";
   const { step, late_s } = largest;
   const late =
     late_s === 0
       ? "no deviation"
-      : `${one} ${count(step)} (the first is 0) has the largest deviation, ${time(Math.abs(late_s))} ${late_s > 0 ? "late" : "early"}`;
+      : `${noun} ${count(step)} (the first is 0) has the maximum deviation, ${time(Math.abs(late_s))} ${late_s > 0 ? "late" : "early"}`;
   const values = other_values > 0 ? `, ${count(other_values)} with another value` : "";
   return `Compared with the baseline${by}: ${comparedCounts(comparison)} compared, ${count(differing)} differ by more than one clock cycle; ${late}${values}; RMS ${time(rms_s)}.${listedDifferences(comparison)}${driftText(comparison)}`;
 }
@@ -105,21 +105,21 @@ function driftText({ drift_ppm, largest_jitter_s, rms_jitter_s, outliers }) {
   if (Math.abs(drift_ppm) > MAX_DRIFT_PPM) return "";
   const excluded = outliers > 0 ? `, ${counted(outliers, "outlier")} excluded` : "";
   const drift = drift_ppm.toFixed(1).replace(/^-(0\.0)$/, "$1");
-  return ` Drift ${drift} ppm; without drift ${time(largest_jitter_s)} at most, jitter ${time(rms_jitter_s)} RMS${excluded}.`;
+  return ` Drift ${drift} ppm; without drift: maximum deviation ${time(largest_jitter_s)}, RMS jitter ${time(rms_jitter_s)}${excluded}.`;
 }
 
-/** Wide enough to show the worst step, where it should be, and some neighbors. @param {Comparison} comparison @param {import("../../state/types.js").Result} result */
-export function worstPlace({ largest, recorded }, { summary, controller }) {
+/** A location that shows the step with the maximum deviation, its planned time, and some neighbors. @param {Comparison} comparison @param {import("../../state/types.js").Result} result */
+export function worstLocation({ largest, recorded }, { summary, controller }) {
   const { clock_hz, end_cycle } = summary;
   const cycle = Math.round(largest.recorded_s * clock_hz);
   const margin = Math.round(Math.max(4 * Math.abs(largest.late_s) * clock_hz, (4 * end_cycle) / recorded));
-  return { ...around(cycle - margin, cycle + margin, end_cycle, controller), cycle };
+  return { ...locationAround(cycle - margin, cycle + margin, end_cycle, controller), cycle };
 }
 
 /**
  * The message of an imported recording.
- * @param {{file: string, part: Preview["part"], isRecorded: boolean, hasBaseline: boolean, replies: Replies | undefined, isShort: boolean, own: string}} import_
- *   `own` says where the user's work is.
+ * @param {{file: string, part: Preview["part"], isRecorded: boolean, hasBaseline: boolean, replies: Replies | undefined, isShort: boolean, own: string}} imported
+ *   `own`: the hint about the user's work.
  */
 export function importedText({ file, part: visible, isRecorded, hasBaseline, replies, isShort, own }) {
   const part = isRecorded && visible ? ` ${partText(visible)}; its position begins at 0.` : "";
@@ -138,14 +138,14 @@ export function importedText({ file, part: visible, isRecorded, hasBaseline, rep
   return `Opened ${file}. ${shown}${part}${table}${unknown}${baseline}${own}`;
 }
 
-/** Bytes go to the controllers of the experiment before, where these have the same clock. @param {string} made @param {any} base */
-export function withControllers(made, base) {
-  const { source, clock_hz, line, title, note, run_cycles } = readJson(made);
-  if (!source.line || clock_hz !== base.clock_hz) return made;
+/** The scenario of recorded bytes with the controllers of the previous experiment, if the clocks are equal. @param {string} json @param {any} base */
+export function withControllers(json, base) {
+  const { source, clock_hz, line, title, note, run_cycles } = readJson(json);
+  if (!source.line || clock_hz !== base.clock_hz) return json;
   const own = { ...base.line, baud: line.baud, noise: {} };
   const controllers = base.controllers.map((/** @type {any} */ each) => ({ ...each, axes: [], packets: [] }));
   return JSON.stringify({ ...base, source, title, note, run_cycles, line: own, controllers });
 }
 
-/** A note with one more sentence, as long as a note may be. @param {string} note @param {string} text */
+/** A note with one more sentence, cut to the maximum length. @param {string} note @param {string} text */
 export const extendedNote = (note, text) => [...`${note} ${text}`].slice(0, MAX_NOTE).join("");

@@ -1,5 +1,5 @@
 /** The comparison with the baseline. */
-import { byId, element, fill, say } from "../../dom.js";
+import { byId, element, fill, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, short, si, time } from "../../state/number.js";
 import { selected } from "../../state/queries.js";
@@ -16,10 +16,10 @@ export async function showCompared(engine, state) {
   const other = baselineAxis(state);
   const own = state.derived?.controllers[result.controller]?.axes[state.axis];
   const { unit, scale, baseline: baselineScale } = unitOf(state);
-  const same = baseline.revision === result.revision;
-  const apart = same
+  const isSame = baseline.revision === result.revision;
+  const deviation = isSame
     ? null
-    : /** @type {import("../../state/types.js").Apart | null} */ (
+    : /** @type {import("../../state/types.js").Deviation | null} */ (
         await engine
           .latest("apart", "baseline_apart", baseline.controller, state.axis, other.index, unitPair(state))
           .catch(unlessDropped)
@@ -40,32 +40,34 @@ export async function showCompared(engine, state) {
     ),
     row("edges", controller?.edges, baseline.summary.controllers[baseline.controller].edges, count),
   ];
-  const far = apart
+  const deviationRow = deviation
     ? [
         [
           "position",
-          `maximum difference ${short(apart.largest)} ${apart.largest === 1 ? unit.replace(/s$/, "") : unit} at ${time(apart.at_s)}; RMS ${short(apart.rms)} ${unit} over the common time of ${si(apart.common_s, "s")}`,
+          `maximum difference ${short(deviation.largest)} ${deviation.largest === 1 ? unit.replace(/s$/, "") : unit} at ${time(deviation.at_s)}; RMS ${short(deviation.rms)} ${unit} over the common time of ${si(deviation.common_s, "s")}`,
         ],
       ]
     : [];
-  say(
+  setText(
     byId("compared-title"),
-    same
+    isSame
       ? `Baseline: ${baseline.title}. Change the experiment or choose a preset. Dashed curves show the baseline.`
       : `Compared with the baseline: ${baseline.title}`,
   );
   fill(
     byId("compared-facts"),
-    ...(same ? [] : [...rows, ...far]).map(([name, text]) => element("span", {}, element("b", {}, name), ` ${text}`)),
+    ...(isSame ? [] : [...rows, ...deviationRow]).map(([name, text]) =>
+      element("span", {}, element("b", {}, name), ` ${text}`),
+    ),
   );
 }
 
 /** @param {string} name @param {number | undefined} own @param {number | undefined} baseline @param {(value: number) => string} print */
 function row(name, own, baseline, print) {
   if (own === undefined || baseline === undefined) return [name, "–"];
-  const by = own - baseline;
+  const difference = own - baseline;
   return [
     name,
-    `${print(own)}, baseline ${print(baseline)}, ${by === 0 ? "equal" : `${by > 0 ? "+" : "−"}${print(Math.abs(by))}`}`,
+    `${print(own)}, baseline ${print(baseline)}, ${difference === 0 ? "equal" : `${difference > 0 ? "+" : "−"}${print(Math.abs(difference))}`}`,
   ];
 }

@@ -1,14 +1,14 @@
 /** The motion view: position, speed and acceleration, ideal and actual. */
-import { byId, options, say } from "../../dom.js";
+import { byId, setOptions, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, si } from "../../state/number.js";
 import { selected } from "../../state/queries.js";
 import { shown } from "../../state/time_window.js";
-import { drawCursors, overlaid } from "../../time/cursors.js";
+import { drawCursors, hasOverlayChanged } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { onTimeAxis } from "../../time/timeline.js";
-import { chartOf, QUANTITIES, TIME_PX, unitOf, unitsOf, withoutAcceleration } from "./bands.js";
+import { chartOf, QUANTITIES, TIME_PX, unitOf, unitsOf, whyNoAcceleration } from "./bands.js";
 import { createCompare } from "./compare.js";
 import { createReading } from "./reading.js";
 import { requestColumns } from "./request_columns.js";
@@ -16,8 +16,8 @@ import { requestColumns } from "./request_columns.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {ReturnType<typeof chartOf>} Drawn */
 
-/** While the shown time moves, the charts follow at most so often, in ms. */
-const FOLLOW_MS = 80;
+/** Minimum time between two updates of the charts while the visible time moves, in ms. */
+const UPDATE_MS = 80;
 
 /** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
 export function createMotion({ engine, dispatch, now }) {
@@ -25,20 +25,20 @@ export function createMotion({ engine, dispatch, now }) {
   const overlay = /** @type {HTMLCanvasElement} */ (byId("charts-cursor"));
   const axisSelect = /** @type {HTMLSelectElement} */ (byId("motion-axis"));
   const unitSelect = /** @type {HTMLSelectElement} */ (byId("motion-unit"));
-  /** What lies between the cursors; it loads when both are first set. @type {ReturnType<typeof import("./between.js").createBetween> | null} */
+  /** The values between the cursors, loaded when both are first set. @type {ReturnType<typeof import("./between.js").createBetween> | null} */
   let between = null;
   const compare = createCompare({ engine, dispatch, now });
   const fold = /** @type {HTMLDetailsElement} */ (byId("motion-data"));
-  /** The table of what the charts show; it loads when it is first opened. @type {ReturnType<typeof import("./record.js").createRecord> | null} */
+  /** The table of the charts, loaded when it is first opened. @type {ReturnType<typeof import("./record.js").createRecord> | null} */
   let record = null;
   const reading = createReading({ engine, now });
   const handles = createHandles(byId("charts-handles"), () => plot, { dispatch, now });
-  /** @type {import("./bands.js").Seen | null} */
-  let seen = null;
+  /** @type {import("./bands.js").MotionData | null} */
+  let data = null;
   /** @type {Drawn[]} */
   let drawn = [];
   let plot = { left: GUTTER, right: GUTTER + 1 };
-  let byKeys = false;
+  let isKeyboardUsed = false;
 
   axisSelect.addEventListener("change", () => dispatch({ type: "axis", axis: Number(axisSelect.value) }));
   unitSelect.addEventListener("change", () =>
@@ -47,12 +47,12 @@ export function createMotion({ engine, dispatch, now }) {
   stack.addEventListener(
     "keydown",
     () => {
-      byKeys = true;
+      isKeyboardUsed = true;
     },
     { capture: true },
   );
   stack.addEventListener("pointerdown", () => {
-    byKeys = false;
+    isKeyboardUsed = false;
   });
   fold.addEventListener("toggle", async () => {
     try {
@@ -60,7 +60,7 @@ export function createMotion({ engine, dispatch, now }) {
       record ??= createRecord({ engine, now });
       record.render(now());
     } catch {
-      say(byId("record-page"), "The table could not be loaded. Check the network and open it again.");
+      setText(byId("record-page"), "The table could not be loaded. Check the network and open it again.");
     }
   });
   onTimeAxis(stack, () => plot, { dispatch, now });
@@ -77,40 +77,42 @@ export function createMotion({ engine, dispatch, now }) {
     const reply = await requestColumns(engine, state, shown(state), wanted).catch(unlessDropped);
     if (!reply) return;
     if (state.baseline && !reply.baseline) dispatch({ type: "baseline", baseline: null });
-    seen = reply;
+    data = reply;
     paint(now());
   }
 
   /** @param {State} state */
   function paint(state) {
-    if (!seen || !state.result) return;
-    drawn = QUANTITIES.map((quantity) => chartOf(state, /** @type {import("./bands.js").Seen} */ (seen), quantity));
+    if (!data || !state.result) return;
+    drawn = QUANTITIES.map((quantity) =>
+      chartOf(state, /** @type {import("./bands.js").MotionData} */ (data), quantity),
+    );
     for (const [index, quantity] of QUANTITIES.entries()) {
       const canvas = /** @type {HTMLCanvasElement} */ (byId(`chart-${quantity}`));
       const { bands, caption, range, unit, chart } = drawn[index];
-      say(byId(`caption-${quantity}`), `${caption}, ${unit}`);
+      setText(byId(`caption-${quantity}`), `${caption}, ${unit}`);
       draw(canvas, chart);
       const text = bands.length === 0 ? "no data" : `from ${short(range.low)} to ${short(range.high)} ${unit}`;
       canvas.setAttribute("aria-label", `${caption} over time: ${text}`);
     }
-    const note = withoutAcceleration(seen.columns);
+    const note = whyNoAcceleration(data.columns);
     byId("no-acceleration").hidden = note === "";
-    say(byId("no-acceleration"), note);
+    setText(byId("no-acceleration"), note);
     fit(overlay);
     paintCursor(state);
   }
 
-  /** The cursors, on a canvas of their own: a moving pointer redraws nothing else. @param {State} state */
+  /** Draws the cursors on their own canvas, so that a moving pointer redraws nothing else. @param {State} state */
   function paintCursor(state) {
     const layer = cleared(overlay);
-    if (!layer || !seen || !state.result) return;
+    if (!layer || !data || !state.result) return;
     drawCursors(layer.context, state, plot, layer.height - TIME_PX);
     handles.render(state);
     void reading.render(state);
-    say(byId("motion-sentence"), sentence(state));
+    setText(byId("motion-sentence"), sentence(state));
   }
 
-  /** What the charts show now. @param {State} state */
+  /** The visible time and the values between the cursors as text. @param {State} state */
   function sentence(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
@@ -126,15 +128,18 @@ export function createMotion({ engine, dispatch, now }) {
       between ??= createBetween({ engine });
     } catch {
       byId("between").hidden = false;
-      return say(byId("between-span"), "This part of the page could not be loaded. Check the network and try again.");
+      return setText(
+        byId("between-span"),
+        "This part of the page could not be loaded. Check the network and try again.",
+      );
     }
     await between.render(now());
-    say(byId("motion-sentence"), sentence(now()));
+    setText(byId("motion-sentence"), sentence(now()));
   }
 
-  /** Follows the shown time, but leaves the frames between to the pulses. */
+  /** Updates the charts after the visible time moved, but not in every frame, because the pulses need the time. */
   function follow() {
-    const wait = requested + FOLLOW_MS - performance.now();
+    const wait = requested + UPDATE_MS - performance.now();
     if (wait <= 0) return refresh(now());
     if (later === 0) {
       later = window.setTimeout(() => {
@@ -155,26 +160,28 @@ export function createMotion({ engine, dispatch, now }) {
     ) {
       const axes = selected(state)?.channels ?? 1;
       /** @type {HTMLElement} */ (axisSelect.parentElement).hidden = axes === 1;
-      options(
+      setOptions(
         axisSelect,
         Array.from({ length: axes }, (_, i) => [String(i), String(i)]),
         String(state.axis),
       );
-      options(unitSelect, unitsOf(state), unitOf(state).name);
+      setOptions(unitSelect, unitsOf(state), unitOf(state).name);
     }
     compare.render(state, before);
-    const other = before?.axis !== state.axis || before?.result !== state.result || before?.baseline !== state.baseline;
-    const moved = other || before?.window !== state.window;
-    if (before?.window !== state.window || other || before?.unit !== state.unit) record?.render(state);
-    if (before && byKeys && before.cursors !== state.cursors)
+    const isOtherCurve =
+      before?.axis !== state.axis || before?.result !== state.result || before?.baseline !== state.baseline;
+    const isMoved = isOtherCurve || before?.window !== state.window;
+    if (before?.window !== state.window || isOtherCurve || before?.unit !== state.unit) record?.render(state);
+    if (before && isKeyboardUsed && before.cursors !== state.cursors)
       reading.speak(state, before.cursors.b === state.cursors.b ? "a" : "b");
-    if (before?.cursors !== state.cursors || other || before?.unit !== state.unit)
+    if (before?.cursors !== state.cursors || isOtherCurve || before?.unit !== state.unit)
       void showBetween(state).catch(unlessDropped);
-    if (before && !other && before.window !== state.window && before.difference === state.difference) return follow();
-    if (moved || before?.difference !== state.difference || (state.difference && before?.unit !== state.unit))
+    if (before && !isOtherCurve && before.window !== state.window && before.difference === state.difference)
+      return follow();
+    if (isMoved || before?.difference !== state.difference || (state.difference && before?.unit !== state.unit))
       return refresh(state);
     if (before?.unit !== state.unit) paint(state);
-    else if (overlaid(before, state)) paintCursor(state);
+    else if (hasOverlayChanged(before, state)) paintCursor(state);
     return undefined;
   }
   return { render };

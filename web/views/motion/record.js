@@ -1,5 +1,5 @@
 /** The data table of the motion charts, fifty rows per page. */
-import { button, byId, element, fill, say } from "../../dom.js";
+import { button, byId, element, fill, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, time } from "../../state/number.js";
 import { shown } from "../../state/time_window.js";
@@ -8,15 +8,15 @@ import { requestColumns } from "./request_columns.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
-const ROWS = 50;
+const ROWS_PER_PAGE = 50;
 const PAGES = 10;
 
 /** @param {{engine: import("../../engine/engine.js").Engine, now: () => State}} page */
 export function createRecord({ engine, now }) {
   const fold = /** @type {HTMLDetailsElement} */ (byId("motion-data"));
-  let at = 0;
+  let page = 0;
   const go = (/** @type {number} */ by) => {
-    at = Math.min(PAGES - 1, Math.max(0, at + by));
+    page = Math.min(PAGES - 1, Math.max(0, page + by));
     void show(now());
   };
   const [previous, next] = [button("⇤", "Earlier rows", () => go(-1)), button("⇥", "Later rows", () => go(1))];
@@ -31,14 +31,14 @@ export function createRecord({ engine, now }) {
   async function show(state) {
     if (!fold.open || !state.result) return;
     const { start, end } = shown(state);
-    const page = (end - start) / PAGES;
-    const span = { start: start + at * page, end: start + (at + 1) * page };
-    const seen = await requestColumns(engine, { ...state, difference: false }, span, ROWS, "record").catch(
+    const length = (end - start) / PAGES;
+    const span = { start: start + page * length, end: start + (page + 1) * length };
+    const data = await requestColumns(engine, { ...state, difference: false }, span, ROWS_PER_PAGE, "record").catch(
       unlessDropped,
     );
-    if (!seen) return;
+    if (!data) return;
     const bands = QUANTITIES.flatMap((quantity) =>
-      bandsOf(state, { ...seen, apart: null }, quantity)
+      bandsOf(state, { ...data, difference: null }, quantity)
         .reverse()
         .map((band) => ({ ...band, quantity })),
     );
@@ -46,7 +46,7 @@ export function createRecord({ engine, now }) {
     fill(byId("record-head"), ...head.map((text) => element("th", { scope: "col", class: "number" }, text)));
     fill(
       byId("record-rows"),
-      ...[...seen.columns.x].map((seconds, row) =>
+      ...[...data.columns.x].map((seconds, row) =>
         element(
           "tr",
           {},
@@ -61,12 +61,12 @@ export function createRecord({ engine, now }) {
         ),
       ),
     );
-    say(
+    setText(
       byId("record-page"),
-      `Rows ${at * ROWS + 1} to ${(at + 1) * ROWS} of ${ROWS * PAGES}; each row is a 500th of the visible time, with its minimum and maximum.`,
+      `Rows ${page * ROWS_PER_PAGE + 1} to ${(page + 1) * ROWS_PER_PAGE} of ${ROWS_PER_PAGE * PAGES}; each row covers 1/500 of the visible time, with minimum and maximum.`,
     );
-    previous.disabled = at === 0;
-    next.disabled = at === PAGES - 1;
+    previous.disabled = page === 0;
+    next.disabled = page === PAGES - 1;
   }
 
   return { render: (/** @type {State} */ state) => void show(state) };

@@ -4,7 +4,7 @@ import { baselineAxis, unitOf } from "./bands.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
 
-/** What a step is in the selected unit, here and in the baseline. @param {State} state */
+/** The length of a step in the selected unit, in this run and in the baseline. @param {State} state */
 export function unitPair(state) {
   const { scale, baseline } = unitOf(state);
   return new Float64Array([scale, baseline]);
@@ -15,15 +15,15 @@ export function unitPair(state) {
  * @param {State} state
  * @param {import("../../state/types.js").Span} span
  * @param {number} columns
- * @param {string} [slot]  Of questions in one slot only the newest is answered.
- * @returns {Promise<import("./bands.js").Seen | null>}
+ * @param {string} [slot]  Only the newest request of a slot gets a reply.
+ * @returns {Promise<import("./bands.js").MotionData | null>}
  */
 export async function requestColumns(engine, state, { start, end }, columns, slot = "motion") {
   const clock = state.result?.summary.clock_hz ?? 1;
   const window = [start / clock, end / clock, columns];
   const { baseline, axis } = state;
   const of = baselineAxis(state).index;
-  const [own, other, apart] = await Promise.all([
+  const [own, other, difference] = await Promise.all([
     engine.latest(slot, "motion", axis, ...window),
     baseline && engine.latest(`${slot} baseline`, "baseline_motion", baseline.controller, of, ...window),
     baseline && state.difference
@@ -39,5 +39,5 @@ export async function requestColumns(engine, state, { start, end }, columns, slo
         )
       : null,
   ]);
-  return own && { columns: own, baseline: other, apart };
+  return own && { columns: own, baseline: other, difference };
 }

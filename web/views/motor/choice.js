@@ -1,13 +1,15 @@
 /** The choice of a motor and a driver from the lists. */
-import { element, fill, say } from "../../dom.js";
+
+import { element, fill, setText } from "../../dom.js";
 import { Dropped } from "../../engine/request_slots.js";
+import { errorMessage } from "../../state/error_message.js";
 import { readJson } from "../../state/json.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{id: string, name: string, source: string, typical: string[]}} Sheet */
 
-/** Why there is nothing to show. */
-const NONE = "This experiment has no motor. Use the default motor, or choose one, to simulate it.";
+/** The note without a motor. */
+const NO_MOTOR = "This experiment has no motor. Use the default motor, or choose one, to simulate it.";
 
 /** @param {import("./pane.js").Page} page @param {HTMLDetailsElement} fold */
 export function createChoice({ engine, dispatch, now }, fold) {
@@ -19,20 +21,20 @@ export function createChoice({ engine, dispatch, now }, fold) {
     { type: "button", title: "Replaces every motor and driver of the experiment" },
     "Use this motor",
   );
-  press.addEventListener("click", take);
+  press.addEventListener("click", useMotor);
   fill(/** @type {Element} */ (fold.lastElementChild), motor, drive, about, press);
   /** @type {{motors: Sheet[], drives: Sheet[]} | null} */
   let sheets = null;
   /** @type {boolean | null} */
-  let driven = null;
+  let isSimulated = null;
   for (const select of [motor, drive]) select.addEventListener("change", describe);
   fold.addEventListener("toggle", () => fold.open && !sheets && load());
 
   async function load() {
     try {
-      sheets = await engine.consider("sheets", "sheets");
+      sheets = await engine.compute("sheets", "sheets");
     } catch (error) {
-      return say(about, error instanceof Error ? error.message : String(error));
+      return setText(about, errorMessage(error));
     }
     if (!sheets) return undefined;
     const of = (/** @type {Sheet[]} */ list, /** @type {string} */ own) => [
@@ -44,24 +46,24 @@ export function createChoice({ engine, dispatch, now }, fold) {
     return describe();
   }
 
-  /** Where the figures come from. */
+  /** Shows the sources of the selected data. */
   function describe() {
     const selected = [
       sheets?.motors.find(({ id }) => id === motor.value),
       sheets?.drives.find(({ id }) => id === drive.value),
     ].filter((sheet) => sheet !== undefined);
     const words = selected.map(({ source, typical }) =>
-      typical.length > 0 ? `${source}; typical only: ${typical.join(", ").replaceAll("_", " ")}` : source,
+      typical.length > 0 ? `${source}; typical values only: ${typical.join(", ").replaceAll("_", " ")}` : source,
     );
-    say(about, words.join(". ") || (driven ? "" : NONE));
-    press.disabled = driven === true && selected.length === 0;
+    setText(about, words.join(". ") || (isSimulated ? "" : NO_MOTOR));
+    press.disabled = isSimulated === true && selected.length === 0;
   }
 
-  async function take() {
+  async function useMotor() {
     const json = JSON.stringify(now().scenario);
     const text = await engine
-      .consider("with motor", "with_motor", json, motor.value, drive.value)
-      .catch((error) => void (error instanceof Dropped || say(about, error instanceof Error ? error.message : error)));
+      .compute("with motor", "with_motor", json, motor.value, drive.value)
+      .catch((error) => void (error instanceof Dropped || setText(about, errorMessage(error))));
     if (!text || JSON.stringify(now().scenario) !== json) return;
     dispatch({ type: "edit", path: "", value: readJson(text) });
     motor.value = drive.value = "";
@@ -69,14 +71,14 @@ export function createChoice({ engine, dispatch, now }, fold) {
     describe();
   }
 
-  /** @param {State} state @param {boolean} isDriven */
-  function show(state, isDriven) {
-    const was = driven;
-    driven = isDriven || Boolean(state.scenario.plant);
-    say(press, driven ? "Use this motor" : "Simulate a motor");
-    press.classList.toggle("main", !driven);
-    // There is nothing else to see where nothing is driven.
-    if (state.result && was !== driven) fold.open = !driven;
+  /** @param {State} state @param {boolean} hasReport */
+  function show(state, hasReport) {
+    const before = isSimulated;
+    isSimulated = hasReport || Boolean(state.scenario.plant);
+    setText(press, isSimulated ? "Use this motor" : "Simulate a motor");
+    press.classList.toggle("main", !isSimulated);
+    // Without a simulated motor the view has nothing else to show.
+    if (state.result && before !== isSimulated) fold.open = !isSimulated;
     describe();
   }
   return { show };

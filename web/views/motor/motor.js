@@ -1,27 +1,27 @@
-/** The motor view: curves over time, a verdict and numbers. */
-import { byId, element, fill, options, say } from "../../dom.js";
+/** The motor view: curves over time, a summary and numbers. */
+import { byId, element, fill, setOptions, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, si } from "../../state/number.js";
 import { selected } from "../../state/queries.js";
 import { readingCycle, shown } from "../../state/time_window.js";
-import { drawCursors, overlaid } from "../../time/cursors.js";
+import { drawCursors, hasOverlayChanged } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { onTimeAxis } from "../../time/timeline.js";
 import { swatch } from "../lines.js";
 import { createChoice } from "./choice.js";
+import { createSummary } from "./motor_summary.js";
 import { showNumbers } from "./numbers.js";
 import { channelOf, chartOf, marksOf, QUANTITIES, shownQuantities } from "./quantities.js";
-import { createVerdict } from "./verdict.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./numbers.js").Report} Report */
 
-/** Height that a chart has at least, in CSS pixels. */
+/** Minimum height of a chart, in CSS pixels. */
 const CHART_PX = 78;
-/** Rest after a cursor moved before its values are spoken, in ms. */
+/** Delay after a cursor moved before its values are spoken, in ms. */
 const SPEAK_MS = 500;
-/** Height of the time's labels under the last chart, in CSS pixels. */
+/** Height of the time labels below the last chart, in CSS pixels. */
 const TIME_PX = 20;
 
 /** @param {import("./pane.js").Page} page */
@@ -34,7 +34,7 @@ export function createMotor({ engine, dispatch, now }) {
   const spoken = element("p", { class: "unseen", "aria-live": "polite" });
   byId("motor-body").append(spoken);
   let speaking = 0;
-  const verdict = createVerdict({ engine, now, node: byId("motor-verdict") });
+  const summary = createSummary({ engine, now, node: byId("motor-verdict") });
   const choice = createChoice({ engine, dispatch, now }, /** @type {HTMLDetailsElement} */ (byId("motor-choice")));
   let plot = { left: GUTTER, right: GUTTER + 1 };
   const charts = QUANTITIES.map((quantity) => {
@@ -65,61 +65,61 @@ export function createMotor({ engine, dispatch, now }) {
   const handles = createHandles(strip, () => plot, { dispatch, now });
   onTimeAxis(stack, () => plot, { dispatch, now });
   channels.addEventListener("change", () => dispatch({ type: "axis", axis: Number(channels.value) }));
-  watch(stack, () => void curvesOf(now()));
+  watch(stack, () => void loadCurves(now()));
 
   /** @type {Report | null} */
   let report = null;
   /** @type {import("./quantities.js").Curves | null} */
   let curves = null;
-  /** The time that the curves are of. */
-  let stretch = { start: 0, end: 1 };
-  /** The result that all are of. @type {State["result"]} */
-  let about = null;
+  /** The window of the curves. */
+  let curveWindow = { start: 0, end: 1 };
+  /** The result of report and curves. @type {State["result"]} */
+  let resultOfReport = null;
   arrange();
   byId("motor-limits").addEventListener("click", () => {
     dispatch({ type: "study", study: "motor" });
     dispatch({ type: "view", view: "study" });
   });
 
-  /** The visible charts share the room; the last one has the time's labels. */
+  /** Distributes the height among the visible charts; the last one has the time labels. */
   function arrange() {
-    const on = charts.filter(({ quantity }) => shownQuantities.has(quantity.name));
+    const visibleCharts = charts.filter(({ quantity }) => shownQuantities.has(quantity.name));
     for (const { quantity, root, press } of charts) {
       root.hidden = !shownQuantities.has(quantity.name);
       press.setAttribute("aria-pressed", String(!root.hidden));
     }
-    stack.style.gridTemplateRows = `repeat(${on.length}, minmax(${CHART_PX}px, 1fr))`;
-    stack.style.minHeight = `${on.length * CHART_PX + TIME_PX}px`;
+    stack.style.gridTemplateRows = `repeat(${visibleCharts.length}, minmax(${CHART_PX}px, 1fr))`;
+    stack.style.minHeight = `${visibleCharts.length * CHART_PX + TIME_PX}px`;
   }
 
   /** @param {State} state */
-  async function resultOf(state) {
-    const of = state.result;
+  async function loadReport(state) {
+    const { result } = state;
     const reply = /** @type {Report | null | undefined} */ (await engine.latest("plant", "plant").catch(unlessDropped));
-    if (reply === undefined || now().result !== of) return;
-    [about, report] = [of, reply];
-    const has = report !== null;
-    for (const part of ["motor-body", "motor-quantities", "motor-limits"]) byId(part).hidden = !has;
-    say(note, "");
-    choice.show(state, has);
-    verdict.show(state, report, channelOf(state));
+    if (reply === undefined || now().result !== result) return;
+    [resultOfReport, report] = [result, reply];
+    const hasReport = report !== null;
+    for (const part of ["motor-body", "motor-quantities", "motor-limits"]) byId(part).hidden = !hasReport;
+    setText(note, "");
+    choice.show(state, hasReport);
+    summary.show(state, report, channelOf(state));
     if (!report) return;
-    showNumbers(byId("motor-numbers"), report, of?.summary.clock_hz ?? 1);
-    await curvesOf(state);
+    showNumbers(byId("motor-numbers"), report, result?.summary.clock_hz ?? 1);
+    await loadCurves(state);
   }
 
   /** @param {State} state */
-  async function curvesOf(state) {
+  async function loadCurves(state) {
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
-    if (!report || about !== state.result || stack.clientWidth < 60) return;
+    if (!report || resultOfReport !== state.result || stack.clientWidth < 60) return;
     const { start, end } = shown(state);
     const columns = Math.max(16, Math.round(plot.right - plot.left));
     const channel = channelOf(state);
     const reply = await engine
       .latest("plant curves", "plant_curves", channel, start, end, columns)
       .catch(unlessDropped);
-    if (!reply || about !== now().result || channel !== channelOf(now())) return;
-    [curves, stretch] = [reply, { start, end }];
+    if (!reply || resultOfReport !== now().result || channel !== channelOf(now())) return;
+    [curves, curveWindow] = [reply, { start, end }];
     paint();
   }
 
@@ -127,12 +127,12 @@ export function createMotor({ engine, dispatch, now }) {
     const state = now();
     if (!curves || !report || !state.result) return;
     const clock = state.result.summary.clock_hz;
-    const { start, end } = stretch;
-    const marks = marksOf(report, channelOf(state), stretch, clock);
+    const { start, end } = curveWindow;
+    const marks = marksOf(report, channelOf(state), curveWindow, clock);
     const time = { from: start / clock, to: end / clock, marks };
-    const on = charts.filter(({ quantity }) => shownQuantities.has(quantity.name));
-    for (const { quantity, canvas } of on) {
-      const last = quantity === on[on.length - 1].quantity;
+    const visibleCharts = charts.filter(({ quantity }) => shownQuantities.has(quantity.name));
+    for (const { quantity, canvas } of visibleCharts) {
+      const last = quantity === visibleCharts[visibleCharts.length - 1].quantity;
       const { range, chart } = chartOf(quantity, curves, time, last);
       draw(canvas, chart);
       canvas.setAttribute(
@@ -150,11 +150,11 @@ export function createMotor({ engine, dispatch, now }) {
     if (!layer || !report) return;
     drawCursors(layer.context, state, plot, layer.height - TIME_PX);
     handles.render(state);
-    void read(state);
+    void showReadings(state);
   }
 
-  /** The exact values at the pointer or a cursor. @param {State} state */
-  async function read(state) {
+  /** Shows the exact values at the pointer or a cursor. @param {State} state */
+  async function showReadings(state) {
     const { a, b } = state.cursors;
     const cycle = readingCycle(state);
     const values =
@@ -162,17 +162,17 @@ export function createMotor({ engine, dispatch, now }) {
         ? null
         : await engine.latest("plant reading", "plant_at", channelOf(state), cycle).catch(unlessDropped);
     if (values === undefined) return;
-    const at = cycle === null ? "" : `${cycle === a ? "A " : cycle === b ? "B " : ""}${clockTime(cycle, state)}: `;
-    const valueText = (/** @type {{of: string}} */ { of }) => short(visible(values?.[of] ?? Number.NaN), 6);
+    const at = cycle === null ? "" : `${cycle === a ? "A " : cycle === b ? "B " : ""}${cycleTime(cycle, state)}: `;
+    const valueText = (/** @type {{of: string}} */ { of }) => short(withoutNoise(values?.[of] ?? Number.NaN), 6);
     for (const { quantity, reading } of charts)
-      say(reading, values ? `${at}${quantity.lines.map(valueText).join(" · ")}` : "");
+      setText(reading, values ? `${at}${quantity.lines.map(valueText).join(" · ")}` : "");
     speak(values && state.hover === null ? `${at}${sentence(valueText)}` : "");
   }
 
   /** The visible values as text. @param {(line: {of: string}) => string} valueText */
   function sentence(valueText) {
-    const on = QUANTITIES.filter(({ name }) => shownQuantities.has(name));
-    return on
+    const quantities = QUANTITIES.filter(({ name }) => shownQuantities.has(name));
+    return quantities
       .map(
         ({ title, unit, lines }) =>
           `${title} ${lines.map((each) => `${each.label} ${valueText(each)}`).join(", ")} ${unit}`,
@@ -180,37 +180,37 @@ export function createMotor({ engine, dispatch, now }) {
       .join("; ");
   }
 
-  /** Says it once a cursor has come to rest. @param {string} text */
+  /** Speaks a text some time after the last call. @param {string} text */
   function speak(text) {
     clearTimeout(speaking);
-    if (text) speaking = window.setTimeout(() => say(spoken, text), SPEAK_MS);
+    if (text) speaking = window.setTimeout(() => setText(spoken, text), SPEAK_MS);
   }
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     const count = selected(state)?.channels ?? 1;
     /** @type {HTMLElement} */ (channels.parentElement).hidden = count < 2;
-    options(
+    setOptions(
       channels,
       Array.from({ length: count }, (_, i) => [String(i), String(i)]),
       String(channelOf(state)),
     );
     if (before?.scenario !== state.scenario) choice.show(state, report !== null);
-    if (about !== state.result || before?.result !== state.result) return resultOf(state);
-    if (before?.axis !== state.axis) verdict.show(state, report, channelOf(state));
-    if (before?.axis !== state.axis || before?.window !== state.window) return curvesOf(state);
-    if (overlaid(before, state)) paintCursor(state);
+    if (resultOfReport !== state.result || before?.result !== state.result) return loadReport(state);
+    if (before?.axis !== state.axis) summary.show(state, report, channelOf(state));
+    if (before?.axis !== state.axis || before?.window !== state.window) return loadCurves(state);
+    if (hasOverlayChanged(before, state)) paintCursor(state);
     return undefined;
   }
   return { render };
 }
 
-/** What is smaller than any digit counts for nothing. @param {number} value */
-function visible(value) {
+/** Rounds values below the printed digits to 0. @param {number} value */
+function withoutNoise(value) {
   return Math.abs(value) < 1e-12 ? 0 : value;
 }
 
 /** @param {number} cycle @param {State} state */
-function clockTime(cycle, state) {
+function cycleTime(cycle, state) {
   return si(cycle / (state.result?.summary.clock_hz ?? 1), "s", 6);
 }

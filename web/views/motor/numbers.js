@@ -2,7 +2,7 @@
 import { element, fill } from "../../dom.js";
 import { short, si } from "../../state/number.js";
 
-/** The core's names (`PlantReport`). @typedef {{channel: number, verdict: string, slips: number, [number: string]: any}} Motor */
+/** Names of the core (`PlantReport`). @typedef {{channel: number, verdict: string, slips: number, [number: string]: any}} Motor */
 /**
  * @typedef {{plant: {digest: string, load_least_a: number, load_greatest_a: number, load_rms_a: number, deviation_above_a: number | null,
  *   deviation_below_a: number | null, bus_least_v: number, bus_greatest_v: number, collapsed_at_s: number | null, overload_cycle: number | null},
@@ -19,30 +19,30 @@ const ROWS = [
   ["Final commanded position", "command_full_steps", steps],
   ["Final rotor position", "rotor_full_steps", steps],
   ["Lost", "lost_full_steps", steps],
-  ["Slips of four full steps", "slips", String],
+  ["Number of slips (four full steps each)", "slips", String],
   ["Maximum following error", "following_error_full_steps", steps],
-  ["at", "following_error_at_s", seconds],
+  ["at time", "following_error_at_s", seconds],
   ["Maximum speed", "fastest_full_steps_s", (value) => `${short(value, 5)} full steps/s`],
   ["Overshoot after the last step", "overshoot_full_steps", steps],
   ["Settling time (0.05 full steps)", "settling_s", seconds],
-  ["Phase current, peak", "phase_peak_a", amperes],
-  ["Phase current, r.m.s.", "phase_rms_a", amperes],
+  ["Peak phase current", "phase_peak_a", amperes],
+  ["RMS phase current", "phase_rms_a", amperes],
   ["Energy from the bus", "bus_j", joules],
-  ["to copper", "copper_j", joules],
-  ["to friction", "friction_j", joules],
-  ["to viscous friction", "viscous_j", joules],
-  ["to diodes", "diodes_j", joules],
-  ["to the load", "load_j", joules],
-  ["stored", "stored_j", joules],
-  ["left over", "energy_error", (value) => `${short(100 * value, 3)} %`],
+  ["copper losses", "copper_j", joules],
+  ["friction", "friction_j", joules],
+  ["viscous friction", "viscous_j", joules],
+  ["diode losses", "diodes_j", joules],
+  ["load", "load_j", joules],
+  ["stored energy", "stored_j", joules],
+  ["energy balance error", "energy_error", (value) => `${short(100 * value, 3)} %`],
 ];
 
-/** @param {HTMLElement} place @param {Report} report @param {number} clock */
-export function showNumbers(place, { plant, motors, self_test }, clock) {
+/** @param {HTMLElement} root @param {Report} report @param {number} clock */
+export function showNumbers(root, { plant, motors, self_test }, clock) {
   const cell = (/** @type {string} */ text) => element("td", { class: "number" }, text);
   const row = (/** @type {string} */ name, /** @type {string[]} */ cells) =>
     element("tr", {}, element("th", { scope: "row" }, name), ...cells.map(cell));
-  const tested = self_test.map(({ settling_cycles: cycles }) =>
+  const settlingTimes = self_test.map(({ settling_cycles: cycles }) =>
     cycles === null ? "does not settle" : si(cycles / clock, "s"),
   );
   const table = element(
@@ -64,18 +64,18 @@ export function showNumbers(place, { plant, motors, self_test }, clock) {
       ...ROWS.map(([name, key, print]) =>
         row(
           name,
-          // Who has lost steps does not go past its place.
+          // After lost steps the overshoot is meaningless.
           motors.map((motor) => (key === "overshoot_full_steps" && motor.slips > 0 ? "–" : print(motor[key]))),
         ),
       ),
-      ...(tested.length > 0 ? [row("Settling time of the self-test", tested)] : []),
+      ...(settlingTimes.length > 0 ? [row("Settling time of the self-test", settlingTimes)] : []),
       ...(plant.deviation_above_a === null
         ? []
         : [
             row("Supply current above idle, at the sensor", [amperes(plant.deviation_above_a)]),
-            row("below it", [amperes(plant.deviation_below_a ?? 0)]),
+            row("Supply current below idle, at the sensor", [amperes(plant.deviation_below_a ?? 0)]),
           ]),
     ),
   );
-  fill(place, table);
+  fill(root, table);
 }

@@ -6,7 +6,7 @@ import { shapeOf } from "../lines.js";
 /** @typedef {import("../../state/types.js").State} State */
 
 /** @typedef {{x: Float64Array, min: Float64Array, max: Float64Array}} Band */
-/** @typedef {{[name: string]: Band}} Curves  By the core's names. */
+/** @typedef {{[name: string]: Band}} Curves  By their names in the core. */
 /** @typedef {{name: string, title: string, unit: string, lines: {of: string, label: string, ink: string, dash?: number, width?: number}[]}} Quantity */
 
 /** @type {Quantity[]} */
@@ -24,7 +24,7 @@ export const QUANTITIES = [
     name: "error",
     title: "Following error",
     unit: "full steps",
-    lines: [{ of: "error", label: "lag; red: 4 full steps lost", ink: "--actual" }],
+    lines: [{ of: "error", label: "lag; red: slip of 4 full steps", ink: "--actual" }],
   },
   { name: "speed", title: "Speed", unit: "full steps/s", lines: [{ of: "speed", label: "rotor", ink: "--actual" }] },
   {
@@ -50,33 +50,33 @@ export const QUANTITIES = [
     name: "encoder",
     title: "Encoder",
     unit: "codes",
-    lines: [{ of: "encoder", label: "4096 a turn", ink: "--actual" }],
+    lines: [{ of: "encoder", label: "4096 per turn", ink: "--actual" }],
   },
 ];
 
-/** Those visible, by their names. */
+/** Names of the visible quantities. */
 export const shownQuantities = new Set(["angle", "error", "phases", "supply"]);
 
-/** Those visible, in their order. */
+/** The visible quantities in order. */
 export const visibleQuantities = () => QUANTITIES.filter(({ name }) => shownQuantities.has(name));
 
-/** The visible motor: the last one where there are fewer. @param {State} state */
+/** The channel of the visible motor: the selected axis, or the last channel. @param {State} state */
 export const channelOf = (state) => Math.min(state.axis, (selected(state)?.channels ?? 1) - 1);
 
-/** Least distance of two marks, in parts of the stretch. */
-const APART = 1 / 400;
+/** Minimum distance of two marks, relative to the window. */
+const MIN_DISTANCE = 1 / 400;
 
-/** Where a motor loses steps in a stretch of time, in s: of slips that no eye tells apart the first. @param {import("./numbers.js").Report} report @param {number} channel @param {import("../../state/types.js").Span} span @param {number} clock */
+/** The times of slips of a motor in a window, in s; of slips that are too close together only the first. @param {import("./numbers.js").Report} report @param {number} channel @param {import("../../state/types.js").Span} span @param {number} clock */
 export function marksOf({ slips }, channel, { start, end }, clock) {
   let next = start;
   return slips.flatMap(({ channel: of, cycle }) => {
     if (of !== channel || cycle < next || cycle > end) return [];
-    next = cycle + (end - start) * APART;
+    next = cycle + (end - start) * MIN_DISTANCE;
     return [cycle / clock];
   });
 }
 
-/** Minimum and maximum of a quantity's lines, and a range with air around them. @param {Quantity} quantity @param {Curves} curves */
+/** Minimum and maximum of the lines of a quantity, and a range around them with a margin. @param {Quantity} quantity @param {Curves} curves */
 export function rangeOf({ lines }, curves) {
   let [low, high] = [Infinity, -Infinity];
   for (const { of } of lines) {
@@ -84,16 +84,16 @@ export function rangeOf({ lines }, curves) {
     for (const value of curves[of].max) if (value > high) high = value;
   }
   if (low > high) [low, high] = [0, 1];
-  const air = (high - low) * 0.08 || Math.abs(high) * 1e-3 || 1;
-  return { low, high, min: low - air, max: high + air };
+  const margin = (high - low) * 0.08 || Math.abs(high) * 1e-3 || 1;
+  return { low, high, min: low - margin, max: high + margin };
 }
 
 /**
- * One chart over a stretch of time.
- * @param {Quantity} quantity @param {Curves} curves @param {{from: number, to: number, marks: number[]}} time  In s; marks where steps are lost, which the error shows.
- * @param {boolean} last  Whether the time's labels stand under it.
+ * The chart of a quantity in a window of time.
+ * @param {Quantity} quantity @param {Curves} curves @param {{from: number, to: number, marks: number[]}} time  In s; `marks` are the slips, shown in the chart of the following error.
+ * @param {boolean} isLast  Whether it has the time labels.
  */
-export function chartOf(quantity, curves, { from, to, marks }, last) {
+export function chartOf(quantity, curves, { from, to, marks }, isLast) {
   const range = rangeOf(quantity, curves);
   const series = quantity.lines.map(({ of, ink, dash, width }) => {
     const { x } = curves[of];
@@ -110,7 +110,7 @@ export function chartOf(quantity, curves, { from, to, marks }, last) {
   return {
     range,
     chart: {
-      x: { min: from, max: to, unit: "s", prefix: true, label_px: last ? 20 : 0 },
+      x: { min: from, max: to, unit: "s", prefix: true, label_px: isLast ? 20 : 0 },
       y: { min: range.min, max: range.max, unit: "", prefix: true, label_px: GUTTER },
       series: [...lost, ...series],
     },

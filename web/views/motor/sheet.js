@@ -8,11 +8,11 @@ import { channelOf, chartOf, marksOf, visibleQuantities } from "./quantities.js"
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
 
-/** Height of a chart's box, with the time's labels under the last one. */
+/** Height of a chart, and of the time labels below the last one, in CSS pixels. */
 const [PANEL, TIME_PX] = [150, 20];
 
 /** @param {State} state @param {Engine} engine @param {number} columns */
-async function seen(state, engine, columns) {
+async function requestCurves(state, engine, columns) {
   const { start, end } = shown(state);
   const channel = channelOf(state);
   const [report, curves] = await Promise.all([
@@ -32,26 +32,26 @@ async function seen(state, engine, columns) {
 
 /** @param {State} state @param {Engine} engine @param {number} columns  Of the picture. @returns {Promise<{about: string, legend: {name: string, ink: string, dash: number}[], panels: {caption: string, chart: import("../../time/plot.js").Chart, height: number}[]}>} */
 export async function motorPanels(state, engine, columns) {
-  const { curves, channel, from, to, marks } = await seen(state, engine, columns);
+  const { curves, channel, from, to, marks } = await requestCurves(state, engine, columns);
   const all = visibleQuantities();
   return {
     about: `motor ${channel} · ${time(from)} to ${time(to)}`,
     legend: [],
     panels: all.map((quantity, at) => {
-      const last = at === all.length - 1;
+      const isLast = at === all.length - 1;
       const names = quantity.lines.map(({ label, dash }) => (dash ? `${label} (dashed)` : label)).join(", ");
       return {
         caption: `${quantity.title.toLowerCase()}, ${quantity.unit}: ${names}`,
-        chart: chartOf(quantity, curves, { from, to, marks }, last).chart,
-        height: PANEL + (last ? TIME_PX : 0),
+        chart: chartOf(quantity, curves, { from, to, marks }, isLast).chart,
+        height: PANEL + (isLast ? TIME_PX : 0),
       };
     }),
   };
 }
 
-/** Minimum and maximum of each visible curve, a row a place. @param {State} state @param {Engine} engine @param {number} columns */
+/** The visible curves as CSV, with the minimum and maximum of each column. @param {State} state @param {Engine} engine @param {number} columns */
 export async function motorValues(state, engine, columns) {
-  const { curves } = await seen(state, engine, columns);
+  const { curves } = await requestCurves(state, engine, columns);
   const lines = visibleQuantities().flatMap(({ unit, lines }) => lines.map(({ of }) => ({ of, unit })));
   const head = ["time (s)", ...lines.flatMap(({ of, unit }) => [`${of} min (${unit})`, `${of} max (${unit})`])];
   const { x } = curves[lines[0].of];

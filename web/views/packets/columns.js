@@ -2,15 +2,15 @@
 import { count } from "../../state/number.js";
 
 /** @typedef {import("../../state/types.js").PacketRow} PacketRow */
-/** @typedef {{index: number, time: number, gap: number, outcome: number, bytes: number, meaning: number}} Widths  Of the widest texts, in CSS pixels. */
+/** @typedef {{index: number, time: number, gap: number, outcome: number, bytes: number, meaning: number}} Widths  Widths of the widest texts, in CSS pixels. */
 
-/** Room for a few bytes: the most that they get of a frame whose words need the rest. */
-const FEW_BYTES_PX = 104;
-/** Of the columns of bytes and of the outcome there is always so much. */
+/** Minimum width of the bytes of frames, whose meaning needs the remaining width, in CSS pixels. */
+const FRAME_BYTES_PX = 104;
+/** Minimum widths of the bytes and of the outcome. */
 const [MIN_BYTES_PX, MIN_OUTCOME_PX] = [80, 52];
-/** Of the meaning there is so much while the bytes can give way, and then at least the other. */
+/** Minimum widths of the meaning: while the bytes can be narrower, and afterwards. */
 const [MEANING_PX, MIN_MEANING_PX] = [64, 30];
-/** Texts of a row's cells, each with its tooltip where that says more. @type {((row: PacketRow) => [string, string?])[]} */
+/** Text of each cell of a row, and its tooltip if it differs. @type {((row: PacketRow) => [string, string?])[]} */
 export const COLUMNS = [
   ({ index }) => [count(index)],
   ({ start }) => [start],
@@ -20,14 +20,14 @@ export const COLUMNS = [
   ({ gap }) => [gap || "–"],
 ];
 
-/** The meaning of a row, and its direction. @param {PacketRow} row */
+/** The meaning of a row, with an arrow for its direction. @param {PacketRow} row */
 export function meaningOf({ kind, fields }) {
   if (kind === "packet") return fields;
   const arrow = { frame: "→", reply: "←", collision: "↯" }[kind];
   return `${arrow} ${fields || kind}`;
 }
 
-/** Whether a row is what a view points at. @param {PacketRow} row @param {import("../../state/types.js").State["highlighted"]} highlighted */
+/** Whether a row is highlighted. @param {PacketRow} row @param {import("../../state/types.js").State["highlighted"]} highlighted */
 export function isHighlighted(row, highlighted) {
   if (!highlighted) return false;
   if (highlighted.packet !== null) return highlighted.packet === row.index;
@@ -35,17 +35,20 @@ export function isHighlighted(row, highlighted) {
 }
 
 /**
- * Columns as wide as their texts; the meaning takes what is left. Where there is little room the gap goes first, which the
- * inspector shows, too; then bytes and meaning become narrow, and last the outcome.
- * @param {Widths} widest @param {number} room @param {boolean} isFramed  The meaning of a frame says more than its bytes, which get what it leaves.
+ * Columns as wide as their texts; the meaning gets the remaining width. If the table is too narrow, the gap is hidden first (the
+ * inspector shows it), then bytes and meaning become narrower, and last the outcome.
+ * @param {Widths} widest @param {number} width  Of the table. @param {boolean} isFramed  Frames need more width for the meaning than for the bytes.
  */
-export function columnWidths(widest, room, isFramed) {
-  const all = room - widest.index - widest.time;
-  const both = all - widest.gap - widest.outcome;
-  const wanted = Math.min(widest.bytes, Math.max(isFramed ? both - widest.meaning : both / 2, FEW_BYTES_PX));
-  const tight = all < wanted + widest.outcome + widest.gap + MEANING_PX;
-  const left = all - (tight ? 0 : widest.gap);
+export function columnWidths(widest, width, isFramed) {
+  const available = width - widest.index - widest.time;
+  const bytesAndMeaning = available - widest.gap - widest.outcome;
+  const wanted = Math.min(
+    widest.bytes,
+    Math.max(isFramed ? bytesAndMeaning - widest.meaning : bytesAndMeaning / 2, FRAME_BYTES_PX),
+  );
+  const isTight = available < wanted + widest.outcome + widest.gap + MEANING_PX;
+  const left = available - (isTight ? 0 : widest.gap);
   const bytes = Math.max(Math.min(MIN_BYTES_PX, wanted), Math.min(wanted, left - widest.outcome - MEANING_PX));
   const outcome = Math.min(widest.outcome, Math.max(MIN_OUTCOME_PX, left - bytes - MIN_MEANING_PX));
-  return { tight, bytes, outcome };
+  return { isTight, bytes, outcome };
 }

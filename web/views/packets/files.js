@@ -2,7 +2,7 @@
 import { isFiltering } from "../../state/queries.js";
 
 /** @typedef {import("../../state/types.js").State} State */
-/** @typedef {{name: string, type: string, label: string, make: (pace: (part: number) => void) => Promise<BlobPart[]>}} PacketFile */
+/** @typedef {{name: string, type: string, label: string, make: (report: (progress: number) => void) => Promise<BlobPart[]>}} PacketFile */
 
 /** Rows per request. */
 const ROWS = 20_000;
@@ -13,11 +13,11 @@ const FORMATS = [
 ];
 
 /**
- * The files that the packets of the visible run can be saved as: of all rows, of those that the filter shows, of
- * those on the line between the cursors; each as a table, as hex and as bytes. Nothing is made before `make`.
+ * Files of the packets of the visible run: all rows, the filtered rows, and the rows between the cursors; each as CSV, hex and
+ * binary.
  * @param {State} state
  * @param {import("../../engine/engine.js").Engine} engine
- * @returns {PacketFile[]}  None without a result.
+ * @returns {PacketFile[]}  Empty without a result.
  */
 export function packetFiles(state, engine) {
   if (!state.result) return [];
@@ -38,7 +38,7 @@ export function packetFiles(state, engine) {
       name: `stepscope-${scope.name}.${ending}`,
       type,
       label: `${scope.label}: ${about}`,
-      make: async (/** @type {(part: number) => void} */ pace) => {
+      make: async (/** @type {(progress: number) => void} */ report) => {
         const parts = [];
         for (let from = 0; from !== undefined; ) {
           const { part, next, rows } = await engine.request(
@@ -50,7 +50,7 @@ export function packetFiles(state, engine) {
             ...scope.between,
           );
           parts.push(part);
-          pace(Math.min(1, (parts.length * ROWS) / Math.max(1, rows)));
+          report(Math.min(1, (parts.length * ROWS) / Math.max(1, rows)));
           from = next;
         }
         return parts;

@@ -1,7 +1,7 @@
-/** The inspector of the current row; loads unfolded.js on demand. */
-import { byId, say } from "../../dom.js";
+/** The inspector of the current row; loads its content (packet_details.js) on demand. */
+import { byId, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { listen } from "../../shell/commands.js";
+import { registerCommands } from "../../shell/commands.js";
 import { count } from "../../state/number.js";
 import { meaningOf } from "./columns.js";
 
@@ -12,32 +12,35 @@ import { meaningOf } from "./columns.js";
 export function createInspector(page) {
   const details = /** @type {HTMLDetailsElement} */ (byId("packet-inspector"));
   const [bytes, fields] = [byId("packet-bytes"), byId("packet-fields")];
-  /** @type {ReturnType<typeof import("./unfolded.js").createUnfolded> | null} */
-  let unfolded = null;
+  /** @type {ReturnType<typeof import("./packet_details.js").createPacketDetails> | null} */
+  let content = null;
   /** @type {PacketDetail | null} */
   let row = null;
   let wanted = -1;
 
   for (const list of [bytes, fields]) {
-    listen(list, "Bytes and fields of a packet", [
-      { keys: ["ArrowLeft", "ArrowUp"], text: "previous", run: () => unfolded?.step(list, -1) },
-      { keys: ["ArrowRight", "ArrowDown"], text: "next", run: () => unfolded?.step(list, 1) },
-      { keys: ["Home"], text: "first", run: () => unfolded?.step(list, -Infinity) },
-      { keys: ["End"], text: "last", run: () => unfolded?.step(list, Infinity) },
-      { keys: ["Escape"], text: "clear the selection", run: () => unfolded?.point(list, -1) },
+    registerCommands(list, "Bytes and fields of a packet", [
+      { keys: ["ArrowLeft", "ArrowUp"], text: "previous", run: () => content?.step(list, -1) },
+      { keys: ["ArrowRight", "ArrowDown"], text: "next", run: () => content?.step(list, 1) },
+      { keys: ["Home"], text: "first", run: () => content?.step(list, -Infinity) },
+      { keys: ["End"], text: "last", run: () => content?.step(list, Infinity) },
+      { keys: ["Escape"], text: "select none", run: () => content?.point(list, -1) },
     ]);
   }
   details.addEventListener("toggle", () => void paint());
 
-  /** Shows all of the row, where that is unfolded. */
+  /** Shows the row if the inspector is open. */
   async function paint() {
     if (!details.open) return;
     try {
-      const { createUnfolded } = await import("./unfolded.js");
-      unfolded ??= createUnfolded(page, bytes, fields);
-      unfolded.show(row);
+      const { createPacketDetails } = await import("./packet_details.js");
+      content ??= createPacketDetails(page, bytes, fields);
+      content.show(row);
     } catch {
-      say(byId("packet-reading"), "This part of the page could not be loaded. Check the network and unfold it again.");
+      setText(
+        byId("packet-reading"),
+        "This part of the page could not be loaded. Check the network and unfold it again.",
+      );
     }
   }
 
@@ -49,7 +52,7 @@ export function createInspector(page) {
     if (!reply || index !== wanted) return;
     row = /** @type {PacketDetail} */ (reply);
     details.hidden = false;
-    say(
+    setText(
       byId("packet-detail"),
       [`#${count(row.index)}`, meaningOf(row), row.outcome, row.why].filter(Boolean).join(" · "),
     );
@@ -58,13 +61,13 @@ export function createInspector(page) {
 
   return {
     show,
-    /** Highlights the bytes and fields that something points at. @param {State} state */
-    light: (state) => unfolded?.light(state),
+    /** Updates the highlighted bytes and fields. @param {State} state */
+    highlight: (state) => content?.highlight(state),
     row: () => row,
     reset: () => {
       row = null;
       wanted = -1;
-      unfolded?.show(null);
+      content?.show(null);
     },
   };
 }

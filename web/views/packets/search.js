@@ -1,5 +1,5 @@
 /** Search and filters of the packets; the worker finds the rows. */
-import { byId, options, say } from "../../dom.js";
+import { byId, setOptions, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { NO_FILTER } from "../../state/initial.js";
 import { count } from "../../state/number.js";
@@ -7,8 +7,8 @@ import { isFiltering } from "../../state/queries.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
-/** A search that takes longer says so, in ms. */
-const LONG_MS = 120;
+/** A message appears during a search that takes longer than this, in ms. */
+const MESSAGE_DELAY_MS = 120;
 /** @type {[string, string][]} */
 const OUTCOMES = [
   ["", "any outcome"],
@@ -22,9 +22,9 @@ const KINDS = { packet: "packets", frame: "frames", reply: "replies", collision:
 
 /**
  * @param {import("./packets.js").Page} page
- * @param {{place: () => {position: number, row: import("../../state/types.js").PacketRow | null}, reload: () => Promise<void>, moveTo: (position: number) => Promise<void>}} table
+ * @param {{current: () => {position: number, row: import("../../state/types.js").PacketRow | null}, reload: () => Promise<void>, moveTo: (position: number) => Promise<void>}} table
  */
-export function createSearch({ engine, dispatch, now }, { place, reload, moveTo }) {
+export function createSearch({ engine, dispatch, now }, { current, reload, moveTo }) {
   const text = /** @type {HTMLInputElement} */ (byId("packets-search"));
   const only = /** @type {HTMLInputElement} */ (byId("packets-only"));
   const [kind, address, outcome] = ["kind", "address", "outcome"].map(
@@ -33,7 +33,7 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
   const panel = byId("packets-filter");
   let matches = 0;
   let request = 0;
-  options(outcome, OUTCOMES, "");
+  setOptions(outcome, OUTCOMES, "");
 
   /** @param {Partial<State["filter"]>} filter */
   const change = (filter) => dispatch({ type: "filter", filter });
@@ -63,19 +63,19 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
     byId("packets-filters").setAttribute("aria-expanded", String(shown));
   }
 
-  /** Goes to the next row that the text finds. @param {boolean} forward */
+  /** Goes to the next or previous match. @param {boolean} forward */
   async function next(forward) {
-    const position = await engine.request("next_match", place().position, forward).catch(unlessDropped);
+    const position = await engine.request("next_match", current().position, forward).catch(unlessDropped);
     if (typeof position !== "number") return;
     await moveTo(position);
-    found();
+    showMatch();
   }
 
-  /** Which of the matches the current row is. */
-  function found() {
+  /** Shows the rank of the current row among the matches. */
+  function showMatch() {
     const { text: wanted } = now().filter;
-    const rank = place().row?.rank ?? null;
-    say(
+    const rank = current().row?.rank ?? null;
+    setText(
       byId("packets-found"),
       wanted.trim() === ""
         ? ""
@@ -90,13 +90,13 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
     }
   }
 
-  /** Another run: what there is to choose from, and the same filter over its rows. @param {State} state */
-  async function start(state) {
+  /** Updates the choices for another run, and applies the filter to it. @param {State} state */
+  async function setRun(state) {
     const own = ++request;
     const choices = await engine.request("packet_choices").catch(unlessDropped);
     if (choices) {
       const { framed } = state.result?.summary ?? {};
-      options(
+      setOptions(
         kind,
         [
           ["", "any kind"],
@@ -106,7 +106,7 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
         ],
         state.filter.kind,
       );
-      options(
+      setOptions(
         address,
         [
           ["", "any address"],
@@ -123,27 +123,35 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
     if (isFiltering(state.filter)) return filter(state);
     matches = 0;
     await reload();
-    found();
+    showMatch();
   }
 
-  /** Has the worker look for the rows; a newer question ends an older one. @param {State} state */
+  /** Filters the rows in the worker; a newer filter ends an older one. @param {State} state */
   async function filter(state) {
     const own = ++request;
-    const slow = setTimeout(() => say(byId("packets-found"), "searching…"), LONG_MS);
-    const { text: wanted, kind: kindWanted, address: at, outcome: mark, only: alone } = state.filter;
-    const row = place().row;
-    const reply = await engine.request("filter", wanted, kindWanted, at, mark, alone).catch(unlessDropped);
-    clearTimeout(slow);
+    const messageTimer = setTimeout(() => setText(byId("packets-found"), "searching…"), MESSAGE_DELAY_MS);
+    const {
+      text: wanted,
+      kind: wantedKind,
+      address: wantedAddress,
+      outcome: wantedOutcome,
+      only: isOnlyMatches,
+    } = state.filter;
+    const row = current().row;
+    const reply = await engine
+      .request("filter", wanted, wantedKind, wantedAddress, wantedOutcome, isOnlyMatches)
+      .catch(unlessDropped);
+    clearTimeout(messageTimer);
     if (!reply || own !== request) return;
     matches = reply.matches;
-    say(byId("packets-note"), reply.note);
-    // The row that was the current one stays it; a search goes on from there.
-    const there = row ? await engine.request("packet_position", row.index).catch(unlessDropped) : undefined;
+    setText(byId("packets-note"), reply.note);
+    // The current row stays; the search continues from it.
+    const position = row ? await engine.request("packet_position", row.index).catch(unlessDropped) : undefined;
     if (own === request) await reload();
     if (own !== request) return;
-    if (typeof there === "number") await moveTo(there);
-    if (matches > 0 && place().row?.rank === null) return next(true);
-    found();
+    if (typeof position === "number") await moveTo(position);
+    if (matches > 0 && current().row?.rank === null) return next(true);
+    showMatch();
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -155,10 +163,10 @@ export function createSearch({ engine, dispatch, now }, { place, reload, moveTo 
     kind.value = wanted.kind;
     address.value = String(wanted.address ?? "");
     outcome.value = wanted.outcome;
-    const more = wanted.kind !== "" || wanted.address !== null || wanted.outcome !== "";
-    byId("packets-filters").classList.toggle("active", more || (wanted.only && wanted.text !== ""));
-    if (more && panel.hidden) open(true);
+    const hasFilters = wanted.kind !== "" || wanted.address !== null || wanted.outcome !== "";
+    byId("packets-filters").classList.toggle("active", hasFilters || (wanted.only && wanted.text !== ""));
+    if (hasFilters && panel.hidden) open(true);
   }
 
-  return { render, start, filter, next };
+  return { render, setRun, filter, next };
 }

@@ -1,5 +1,5 @@
 /** The packet table. */
-import { byId, element, fill, say } from "../../dom.js";
+import { byId, element, fill, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count } from "../../state/number.js";
 import { ROW_PX, virtualRows } from "../virtual_rows.js";
@@ -14,9 +14,9 @@ const ruler = /** @type {CanvasRenderingContext2D} */ (document.createElement("c
 
 /**
  * @param {import("./packets.js").Page} page
- * @param {{inspect: (row: PacketRow) => void, choose: (row: PacketRow, go?: boolean) => void, counted: (page: PacketPage) => void}} told
+ * @param {{inspect: (row: PacketRow) => void, select: (row: PacketRow) => void, onPage: (page: PacketPage) => void}} callbacks
  */
-export function createTable({ engine, dispatch, now }, { inspect, choose, counted }) {
+export function createTable({ engine, dispatch, now }, { inspect, select, onPage }) {
   const scroller = byId("packets-scroll");
   const space = byId("packets-space");
   const table = byId("packets");
@@ -25,9 +25,9 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   let reply = { total: 0, shown: 0, matches: 0, unit: "ms", rows: [] };
   /** Position of the current row among those visible. */
   let current = 0;
-  /** Widest texts of the columns so far, in CSS pixels: columns do not jump while the table scrolls. @type {{[column: string]: number}} */
+  /** Width of the widest text of each column so far, in CSS pixels, so that columns do not jump while the table scrolls. @type {{[column: string]: number}} */
   let widest = {};
-  let cellAir = 0;
+  let cellPadding = 0;
 
   scroller.addEventListener("scroll", reload);
   new ResizeObserver(reload).observe(scroller);
@@ -39,7 +39,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     const row = rowAt(event);
     if (!row) return;
     current = row.position;
-    choose(row);
+    select(row);
   });
   body.addEventListener("pointerover", (event) => {
     const row = rowAt(event);
@@ -53,14 +53,14 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
 
   const { first, visible, scrollTo, resize } = virtualRows(scroller, space, () => reply.shown);
 
-  /** Makes another row the current one. @param {number} position */
+  /** Sets the current row. @param {number} position */
   function moveTo(position) {
     current = Math.min(Math.max(0, reply.shown - 1), Math.max(0, position));
     scrollTo(current);
     return reload();
   }
 
-  /** The current row, also where the table has not drawn it yet. @returns {Promise<PacketRow | null>} */
+  /** The current row, even if it is not drawn. @returns {Promise<PacketRow | null>} */
   async function currentRow() {
     const page = await engine.request("packets", current, 1).catch(unlessDropped);
     return page?.rows[0] ?? null;
@@ -68,34 +68,34 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
 
   /** Requests the visible rows. */
   async function reload() {
-    const { result, bare } = now();
-    // Out of sight nothing is drawn; whether there is anything to show has to be known all the same.
-    const unseen = scroller.clientHeight < ROW_PX;
-    if (!result || (unseen && !bare.includes("packets"))) return;
-    const from = unseen ? 0 : first();
-    const page = await engine.latest("packets", "packets", from, unseen ? 1 : visible() + 2).catch(unlessDropped);
+    const { result, emptyViews } = now();
+    // A hidden table draws nothing, but has to find out whether it is empty.
+    const isHidden = scroller.clientHeight < ROW_PX;
+    if (!result || (isHidden && !emptyViews.includes("packets"))) return;
+    const from = isHidden ? 0 : first();
+    const page = await engine.latest("packets", "packets", from, isHidden ? 1 : visible() + 2).catch(unlessDropped);
     if (!page) return;
-    if (unseen) return counted(page);
-    const others = page.shown !== reply.shown || page.total !== reply.total;
+    if (isHidden) return onPage(page);
+    const isOtherList = page.shown !== reply.shown || page.total !== reply.total;
     reply = page;
-    if (others) {
+    if (isOtherList) {
       current = Math.min(current, Math.max(0, reply.shown - 1));
       table.setAttribute("aria-rowcount", String(reply.shown + 1));
       resize();
       // Fewer rows may have moved the scroll bar.
       if (first() !== from) return reload();
     }
-    counted(reply);
+    onPage(reply);
     paint(now());
   }
 
   /** @param {State} state */
   function paint(state) {
     const { rows, unit } = reply;
-    say(byId("packets-time"), `start, ${unit}`);
-    say(byId("packets-gap"), `gap, ${unit}`);
-    say(byId("packets-meaning"), state.result?.summary.framed ? "meaning" : "steps");
-    // A row that stays keeps its element: a click that began on it ends on it.
+    setText(byId("packets-time"), `start, ${unit}`);
+    setText(byId("packets-gap"), `gap, ${unit}`);
+    setText(byId("packets-meaning"), state.result?.summary.framed ? "meaning" : "steps");
+    // Rows that stay keep their elements, so that a click begins and ends on the same element.
     const nodes = new Map([...body.rows].map((node) => [node.id, node]));
     fill(
       body,
@@ -113,10 +113,10 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
         ]
           .join(" ")
           .trim();
-        for (const [place, column] of COLUMNS.entries()) {
+        for (const [index, column] of COLUMNS.entries()) {
           const [text, title = text] = column(row);
-          say(node.cells[place], text);
-          node.cells[place].title = title;
+          setText(node.cells[index], text);
+          node.cells[index].title = title;
         }
         return node;
       }),
@@ -124,27 +124,23 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     const row = rows.find(({ position }) => position === current);
     if (row) table.setAttribute("aria-activedescendant", `packet-${row.index}`);
     else table.removeAttribute("aria-activedescendant");
-    light(state);
-    widen();
+    highlight(state);
+    updateWidths();
     if (row) inspect(row);
   }
 
-  /** Marks the rows that another view, or this one, points at. @param {State} state */
-  function light({ highlighted }) {
-    for (const [place, node] of [...body.rows].entries()) {
-      const row = reply.rows[place];
+  /** Updates the highlighted rows. @param {State} state */
+  function highlight({ highlighted }) {
+    for (const [index, node] of [...body.rows].entries()) {
+      const row = reply.rows[index];
       node.classList.toggle("highlighted", row !== undefined && isHighlighted(row, highlighted));
     }
   }
 
-  /**
-   * Columns as wide as their texts; the meaning takes what is left. Where there is little room the gap goes first, which
-   * the inspector tells, then the bytes and the meaning become narrow, and last the outcome.
-   */
-  function widen() {
-    // Air at both sides of a cell's text.
-    const air = 1 + 2 * Number.parseFloat(getComputedStyle(table.querySelector("th") ?? table).paddingLeft);
-    if (air !== cellAir) [cellAir, widest] = [air, {}];
+  /** Measures the texts and sets the widths of the columns (`columnWidths`). */
+  function updateWidths() {
+    const padding = 1 + 2 * Number.parseFloat(getComputedStyle(table.querySelector("th") ?? table).paddingLeft);
+    if (padding !== cellPadding) [cellPadding, widest] = [padding, {}];
     const fontOf = (/** @type {string} */ cell) => {
       const { fontWeight, fontSize, fontFamily } = getComputedStyle(table.querySelector(cell) ?? table);
       return `${fontWeight} ${fontSize} ${fontFamily}`;
@@ -153,7 +149,7 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
       ruler.font = font;
       widest[column] = Math.max(
         widest[column] ?? 0,
-        ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + air),
+        ...texts.map((text) => Math.ceil(ruler.measureText(text).width) + padding),
       );
     };
     const { rows, unit } = reply;
@@ -169,8 +165,8 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
     measure("bytes", head, "bytes (hex)");
     measure("meaning", plain, ...rows.map(meaningOf));
     const isFramed = Boolean(now().result?.summary.framed);
-    const { tight, bytes, outcome } = columnWidths(/** @type {Widths} */ (widest), table.clientWidth, isFramed);
-    table.classList.toggle("tight", tight);
+    const { isTight, bytes, outcome } = columnWidths(/** @type {Widths} */ (widest), table.clientWidth, isFramed);
+    table.classList.toggle("tight", isTight);
     for (const [column, width] of Object.entries({ ...widest, outcome, bytes }))
       table.style.setProperty(`--${column}-px`, `${width}px`);
   }
@@ -178,15 +174,18 @@ export function createTable({ engine, dispatch, now }, { inspect, choose, counte
   return {
     reload,
     moveTo,
-    light,
+    highlight,
     current: currentRow,
-    /** @param {number} by  Rows. */
+    /** Moves by rows. @param {number} by */
     move: (by) => {
       moveTo(current + by);
     },
     page: () => Math.max(1, visible() - 1),
-    place: () => ({ position: current, row: reply.rows.find(({ position }) => position === current) ?? null }),
-    /** Another run. */
+    currentPosition: () => ({
+      position: current,
+      row: reply.rows.find(({ position }) => position === current) ?? null,
+    }),
+    /** Resets the table for another run. */
     reset: () => {
       current = 0;
       widest = {};

@@ -1,5 +1,5 @@
 /** The selected entry of the script: name, time and remove button. */
-import { element, say } from "../../dom.js";
+import { element, setText } from "../../dom.js";
 import { parseNumber } from "../../state/parse_number.js";
 import { nameOf } from "./script.js";
 
@@ -22,7 +22,7 @@ export function createEntryLine({ clock, timeOf, report, move, remove }) {
   const idle = element(
     "p",
     { class: "entry-line quiet" },
-    "Diamonds are inputs: drag one, or select it with ",
+    "Diamonds are inputs. Drag one, or select it with ",
     ...[key("N"), " and ", key("P"), " and move it with ", key(","), " and ", key(".")],
   );
   /** @type {Placed | null} */
@@ -30,8 +30,8 @@ export function createEntryLine({ clock, timeOf, report, move, remove }) {
   cycle.addEventListener("change", () => {
     const given = parseNumber(cycle.value, "cycles", { integer: true, clockHz: clock() });
     if ("message" in given) return report(given.message, true);
-    const to = selected && move(selected, given.value);
-    if (to) cycle.value = String(to.entry.cycle);
+    const moved = selected && move(selected, given.value);
+    if (moved) cycle.value = String(moved.entry.cycle);
     return undefined;
   });
   removeButton.addEventListener("click", () => {
@@ -47,7 +47,7 @@ export function createEntryLine({ clock, timeOf, report, move, remove }) {
       idle.hidden = placed !== null || !hasEntries;
       if (!placed) return;
       const { entry } = placed;
-      say(name, `${nameOf(entry)} at ${timeOf(entry.cycle)}, cycle`);
+      setText(name, `${nameOf(entry)} at ${timeOf(entry.cycle)}, cycle`);
       if (document.activeElement !== cycle) cycle.value = String(entry.cycle);
       removeButton.title = `Remove ${nameOf(entry)} (Delete)`;
     },

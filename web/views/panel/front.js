@@ -1,11 +1,11 @@
 /** The front panel: display, LED, buttons, keys, emergency stop, power and switches. */
-import { element, fill, say } from "../../dom.js";
-import { advice, lcd, led, SWITCHES, sentence } from "./names.js";
+import { element, fill, setText } from "../../dom.js";
+import { advice, inputLabel, lcd, led, SWITCHES, sentence } from "./names.js";
 import { driven } from "./script.js";
 
 /** @typedef {import("./names.js").Word} Word */
 /** @typedef {{word: Word, position: number, display: number, place: number, error: number, perUnit: number, decimals: number, powered: boolean, loops: number, groups: number}} Moment */
-/** @typedef {{down: (input: string) => void, up: (input: string) => void, click: (input: string) => void, set: (input: string, level: number) => void}} Hand */
+/** @typedef {{down: (input: string) => void, up: (input: string) => void, click: (input: string) => void, set: (input: string, level: number) => void}} PanelInputs  Called for the presses and switches of the user. */
 
 /** Buttons of the panel, one per row. */
 const BUTTONS = [
@@ -15,8 +15,8 @@ const BUTTONS = [
 ];
 /** @type {{[input: string]: string}} */
 const FACES = { jog_minus: "◀ jog", jog_plus: "jog ▶" };
-/** What each does. @type {{[input: string]: string}} */
-const ABOUT = {
+/** The effect of each button. @type {{[input: string]: string}} */
+const EFFECTS = {
   start: "start the program, or continue after a pause",
   pause: "pause a move, a delay or a wait",
   clear: "clear an alarm or the entry; cancel after a pause",
@@ -24,15 +24,15 @@ const ABOUT = {
   jog_plus: "jog right while held",
   zero: "return to zero",
   home: "start homing",
-  debug: "fine jog and setting of zero, and back",
-  system: "show the numbers, one by one",
-  ok: "confirm the entry; in DEBUG set zero here",
-  back: "leave the numbers",
+  debug: "switch to fine jog and setting of zero, and back",
+  system: "show the next number",
+  ok: "confirm the entry, or set zero here in the state DEBUG",
+  back: "close the numbers",
 };
-const LEDS = { quick: "blinks quickly", on: "is on", slow: "blinks slowly" };
+const LEDS = { quick: "blinks fast", on: "is on", slow: "blinks slowly" };
 
-/** @param {HTMLElement} place @param {Hand} hand */
-export function createFront(place, hand) {
+/** @param {HTMLElement} root @param {PanelInputs} inputs */
+export function createFront(root, inputs) {
   const display = element("output", { class: "lcd", "aria-label": "Display", "aria-live": "off" });
   const lamp = element("span", { class: "led", "aria-hidden": "true" });
   const lampText = element("span", { class: "led-text" });
@@ -44,33 +44,37 @@ export function createFront(place, hand) {
 
   /** @param {string} input @param {string} face @param {string} about */
   function momentary(input, face, about) {
-    const made = element("button", { type: "button", "data-input": input, title: `${input}: ${about}` }, face);
-    if (face !== input) made.setAttribute("aria-label", input);
+    const made = element(
+      "button",
+      { type: "button", "data-input": input, title: `${inputLabel(input)}: ${about}` },
+      face,
+    );
+    if (face !== input) made.setAttribute("aria-label", inputLabel(input));
     made.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
       made.setPointerCapture(event.pointerId);
-      hand.down(input);
+      inputs.down(input);
     });
-    for (const end of ["pointerup", "pointercancel", "blur"]) made.addEventListener(end, () => hand.up(input));
+    for (const end of ["pointerup", "pointercancel", "blur"]) made.addEventListener(end, () => inputs.up(input));
     made.addEventListener("keydown", ({ key, repeat }) => {
-      if ((key === " " || key === "Enter") && !repeat) hand.down(input);
+      if ((key === " " || key === "Enter") && !repeat) inputs.down(input);
     });
     made.addEventListener("keyup", ({ key }) => {
-      if (key === " " || key === "Enter") hand.up(input);
+      if (key === " " || key === "Enter") inputs.up(input);
     });
-    made.addEventListener("click", () => hand.click(input));
+    made.addEventListener("click", () => inputs.click(input));
     buttons.set(input, made);
     return made;
   }
 
-  /** Puts a level. @param {string} input @param {number} level @param {string} face @param {string} about */
+  /** A button that sets an input to a level. @param {string} input @param {number} level @param {string} face @param {string} about */
   function lever(input, level, face, about) {
     const made = element(
       "button",
       { type: "button", "data-input": input, "data-level": String(level), title: about },
       face,
     );
-    made.addEventListener("click", () => hand.set(input, level));
+    made.addEventListener("click", () => inputs.set(input, level));
     return made;
   }
 
@@ -78,23 +82,23 @@ export function createFront(place, hand) {
   estop.classList.add("estop");
   const release = lever("estop", 0, "Release", "Release the emergency stop at the cursor; then press clear");
   const cut = lever("power", 0, "Cut power here", "Switch the power off at the cursor");
-  const back = lever("power", 1, "Power back", "Switch the power on at the cursor");
+  const back = lever("power", 1, "Restore power", "Switch the power on at the cursor");
   const switches = SWITCHES.map((input) => {
     const made = element(
       "button",
       { type: "button", class: "switch", "data-input": input, "aria-pressed": "false" },
-      input,
+      inputLabel(input),
     );
-    made.addEventListener("click", () => hand.set(input, made.getAttribute("aria-pressed") === "true" ? 0 : 1));
+    made.addEventListener("click", () => inputs.set(input, made.getAttribute("aria-pressed") === "true" ? 0 : 1));
     return made;
   });
   fill(
-    place,
+    root,
     element("div", { class: "glass" }, display, element("span", { class: "lamp" }, lamp, lampText), outputs),
     words,
     element("div", { class: "panel-messages" }, next),
     ...BUTTONS.map((row) =>
-      element("div", { class: "pad" }, ...row.map((input) => momentary(input, FACES[input] ?? input, ABOUT[input]))),
+      element("div", { class: "pad" }, ...row.map((input) => momentary(input, FACES[input] ?? input, EFFECTS[input]))),
     ),
     element(
       "div",
@@ -113,22 +117,25 @@ export function createFront(place, hand) {
   );
 
   /**
-   * @param {Moment | null} moment @param {(input: string) => boolean} level  Of an input at that moment. @param {any} parameters
+   * @param {Moment | null} moment @param {(input: string) => boolean} level  Level of an input at that moment. @param {any} settings
    */
-  function show(moment, level, parameters) {
+  function show(moment, level, settings) {
     if (!moment) return;
     const { word, decimals } = moment;
-    say(display, word.state === "OFF" ? "" : lcd(moment.display, decimals));
+    setText(display, word.state === "OFF" ? "" : lcd(moment.display, decimals));
     const light = word.state === "OFF" ? null : led(word);
     lamp.dataset.led = light ?? "off";
-    say(lampText, light ? `LED ${LEDS[light]}` : "LED is off");
-    say(words, sentence(word, moment));
+    setText(lampText, light ? `LED ${LEDS[light]}` : "LED is off");
+    setText(words, sentence(word, moment));
     words.classList.toggle("alarm", word.state === "ALARM");
-    say(next, advice(word, Boolean(parameters?.home)));
+    setText(next, advice(word, Boolean(settings?.home)));
     const home = buttons.get("home");
     if (home)
-      home.title = `home: ${ABOUT.home}${parameters?.home ? "" : "; no effect: homing is not set up in the form"}`;
-    say(outputs, word.outputs ? `out ${[0, 1, 2, 3].filter((output) => (word.outputs >> output) & 1).join(" ")}` : "");
+      home.title = `home: ${EFFECTS.home}${settings?.home ? "" : "; no effect: homing is not set up in the form"}`;
+    setText(
+      outputs,
+      word.outputs ? `outputs ${[0, 1, 2, 3].filter((output) => (word.outputs >> output) & 1).join(" ")}` : "",
+    );
     for (const [input, made] of buttons) made.classList.toggle("down", level(input));
     estop.classList.toggle("down", level("estop"));
     estop.setAttribute("aria-pressed", String(level("estop")));
@@ -139,15 +146,17 @@ export function createFront(place, hand) {
     ])) {
       const hadFocus = document.activeElement === made;
       made.disabled = off;
-      // What has just been pressed leaves the focus to what takes it back.
+      // A pressed button that is now disabled passes the focus to the button that undoes it.
       if (off && hadFocus) (made === cut ? back : made === back ? cut : estop).focus();
     }
-    const by = driven(parameters?.axis);
+    const drivenBy = driven(settings?.axis);
     for (const made of switches) {
       const input = /** @type {string} */ (made.dataset.input);
       made.setAttribute("aria-pressed", String(level(input)));
-      made.classList.toggle("driven", input in by);
-      made.title = by[input] ? `${input}: driven by ${by[input]}` : `${input}: toggle it at the cursor`;
+      made.classList.toggle("driven", input in drivenBy);
+      made.title = drivenBy[input]
+        ? `${inputLabel(input)}: driven by ${drivenBy[input]}`
+        : `${inputLabel(input)}: toggle it at the cursor`;
     }
   }
   return { show };

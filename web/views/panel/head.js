@@ -1,9 +1,9 @@
 /** The header of the panel view: controller, hold time and live mode. */
-import { element, options, say } from "../../dom.js";
+import { element, setOptions, setText } from "../../dom.js";
 import { si } from "../../state/number.js";
 import { parseHold, shortestPress } from "./presses.js";
 
-/** Speeds of live. @type {[string, string][]} */
+/** Speeds of the live mode. @type {[string, string][]} */
 const SPEEDS = [
   ["1", "real time"],
   ["0.1", "1/10"],
@@ -11,7 +11,7 @@ const SPEEDS = [
 ];
 
 /**
- * @param {Element} title  What it follows.
+ * @param {Element} title  The heading before it.
  * @param {{panel: () => any, clock: () => number, report: (text: string, isError?: boolean) => void,
  *   select: (controller: number) => void, play: () => void, toEnd: () => void}} page
  */
@@ -25,12 +25,12 @@ export function createHead(title, { panel, clock, report, select, play, toEnd })
     {
       type: "button",
       "aria-pressed": "false",
-      title: "The cursor moves with the clock; buttons react while you hold them",
+      title: "The cursor moves in real time, and buttons react while you hold them",
     },
     "▶ Live",
   );
   const speed = element("select", { "aria-label": "Speed of live mode" });
-  options(speed, SPEEDS, "1");
+  setOptions(speed, SPEEDS, "1");
   const end = element(
     "button",
     {
@@ -47,24 +47,24 @@ export function createHead(title, { panel, clock, report, select, play, toEnd })
     at,
     end,
   );
-  /** The hold that was typed, in cycles. @type {number | null} */
-  let held = null;
+  /** The hold time that the user entered, in cycles. @type {number | null} */
+  let enteredHold = null;
   controller.addEventListener("change", () => select(Number(controller.value)));
   playButton.addEventListener("click", play);
   end.addEventListener("click", toEnd);
   hold.addEventListener("change", () => {
-    const given = parseHold(hold.value, panel(), clock());
-    if ("message" in given) return report(given.message, true);
-    held = given.cycles;
-    if (held !== null) report(given.warning);
+    const parsed = parseHold(hold.value, panel(), clock());
+    if ("message" in parsed) return report(parsed.message, true);
+    enteredHold = parsed.cycles;
+    if (enteredHold !== null) report(parsed.warning);
     return showHold();
   });
 
   /** Cycles of a press. */
-  const holdCycles = () => held ?? shortestPress(panel(), clock());
+  const holdCycles = () => enteredHold ?? shortestPress(panel(), clock());
 
   function showHold() {
-    if (document.activeElement !== hold || held !== null) hold.value = si(holdCycles() / clock(), "s", 6);
+    if (document.activeElement !== hold || enteredHold !== null) hold.value = si(holdCycles() / clock(), "s", 6);
   }
 
   return {
@@ -74,7 +74,7 @@ export function createHead(title, { panel, clock, report, select, play, toEnd })
     /** @param {number} count @param {number} selected */
     showControllers(count, selected) {
       controllerLabel.hidden = count < 2;
-      options(
+      setOptions(
         controller,
         Array.from({ length: count }, (_, index) => [String(index), String(index)]),
         String(selected),
@@ -83,11 +83,11 @@ export function createHead(title, { panel, clock, report, select, play, toEnd })
     /** @param {boolean} isOn */
     showLive(isOn) {
       playButton.setAttribute("aria-pressed", String(isOn));
-      say(playButton, isOn ? "❚❚ Stop" : "▶ Live");
+      setText(playButton, isOn ? "❚❚ Stop" : "▶ Live");
     },
-    /** @param {string} text @param {boolean} isEnd  Whether there is nothing to go back from. */
+    /** @param {string} text @param {boolean} isEnd  Whether the panel already shows the end. */
     showTime(text, isEnd) {
-      say(at, text);
+      setText(at, text);
       end.hidden = isEnd;
     },
   };

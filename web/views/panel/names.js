@@ -1,6 +1,6 @@
 /** Names of panel numbers (CONTROLLER.md G2, G8): inputs, states, alarms, display and LED. */
 
-/** Inputs in the core's order. */
+/** Inputs in the order of the core. */
 export const INPUTS = [
   "power",
   "estop",
@@ -21,10 +21,26 @@ export const INPUTS = [
   "home_switch",
   ...Array.from({ length: 4 }, (_, input) => `in_${input}`),
 ];
-/** Those that are the first controller's for all. */
+/** Inputs of the first controller that all controllers share. */
 export const SHARED = ["power", "estop", "clear"];
-/** Those that stay as they are put. */
+/** Inputs that keep their level. */
 export const SWITCHES = INPUTS.slice(23);
+
+/** Labels of inputs whose name is not their label. @type {{[input: string]: string}} */
+const INPUT_LABELS = {
+  estop: "emergency stop",
+  jog_plus: "jog right",
+  jog_minus: "jog left",
+  limit_min: "left limit switch",
+  limit_max: "right limit switch",
+};
+
+/** The label of an input. @param {string} input */
+export const inputLabel = (input) => INPUT_LABELS[input] ?? input.replace("in_", "input ").replace("_", " ");
+
+/** The label of an input where space is short. @param {string} input */
+export const shortInputLabel = (input) =>
+  inputLabel(input).replace("emergency stop", "e-stop").replace("limit switch", "limit");
 
 export const STATES = [
   "OFF",
@@ -45,9 +61,9 @@ export const STATES = [
 ];
 const ALARMS = ["", "ESTOP", "LIMIT", "SOFT_LIMIT", "HOMING", "TRUST", "TIMEOUT", "MEMORY"];
 export const TRUST = ["LOST", "HELD", "SURE"];
-/** The same for a reader. @type {{[trust: string]: string}} */
-const POSITION = { LOST: "lost", HELD: "restored", SURE: "confirmed" };
-/** The numbers of EDIT, followed by five numbers per move. */
+/** Labels of the levels of trust in the position. @type {{[trust: string]: string}} */
+export const POSITION = { LOST: "lost", HELD: "restored", SURE: "confirmed" };
+/** The numbers of the state EDIT, followed by five numbers per move (`MOVE_NUMBERS`). */
 const NUMBERS = [
   "pulses per unit",
   "decimals",
@@ -58,24 +74,27 @@ const NUMBERS = [
   "loops",
   "used groups",
 ];
-const OF_MOVE = ["length", "speed", "direction", "level", "delay"];
+const MOVE_NUMBERS = ["length", "speed", "direction", "level", "delay"];
 
 /** @typedef {{state: string, alarm: string, trust: string, outputs: number, group: number, loop: number}} Word */
 
-/** The fields of a panel word of 48 bits. @param {number} word @returns {Word} */
+/** The fields of a panel word of 48 bits; an unknown code is shown as its number. @param {number} word @returns {Word} */
 export function read(word) {
   const [low, high] = [word % 2 ** 32, Math.floor(word / 2 ** 32)];
   return {
-    state: STATES[low & 15],
-    alarm: ALARMS[(low >>> 4) & 15],
-    trust: TRUST[(low >>> 8) & 3],
+    state: named(STATES, low & 15),
+    alarm: named(ALARMS, (low >>> 4) & 15),
+    trust: named(TRUST, (low >>> 8) & 3),
     outputs: (low >>> 12) & 15,
     group: (low >>> 16) & 0x1ff,
     loop: high,
   };
 }
 
-/** Six digits. @param {number} display @param {number} decimals */
+/** @param {string[]} names @param {number} code */
+const named = (names, code) => names[code] ?? `unknown (${code})`;
+
+/** A number on the display: six digits, or dashes if it does not fit. @param {number} display @param {number} decimals */
 export function lcd(display, decimals) {
   if (display > 999_999 || display < -99_999) return "------";
   const digits = String(Math.abs(display)).padStart(decimals + 1, "0");
@@ -89,30 +108,30 @@ export function led({ state, trust }) {
   return ["READY", "DEBUG", "EDIT", "PAUSED"].includes(state) && trust === "SURE" ? "on" : "slow";
 }
 
-/** The number that EDIT shows. @param {number} number */
+/** The name of a number in the state EDIT. @param {number} number */
 export function numberName(number) {
   if (number < NUMBERS.length) return NUMBERS[number];
   const at = number - NUMBERS.length;
-  return `${OF_MOVE[at % OF_MOVE.length]} of move ${Math.floor(at / OF_MOVE.length) + 1}`;
+  return `${MOVE_NUMBERS[at % MOVE_NUMBERS.length]} of move ${Math.floor(at / MOVE_NUMBERS.length) + 1}`;
 }
 
-/** Advice for each alarm and each unconfirmed position; @ is how to set the position. @type {{[of: string]: string}} */
+/** Advice for each alarm and each unconfirmed position; `@` stands for how to set the position. @type {{[of: string]: string}} */
 const ADVICE = {
-  ESTOP: "Release the emergency stop, then clear.",
-  LIMIT: "Clear, then jog off the switch.",
-  SOFT_LIMIT: "Clear. The move would exceed the soft limits.",
-  HOMING: "Clear. Homing did not find the switch.",
-  TRUST: "Clear. The position is lost: @.",
-  TIMEOUT: "Clear. The input timed out.",
-  MEMORY: "Clear. The memory is invalid: @.",
-  LOST: "The position is lost: @.",
-  HELD: "The position is restored. Debug, ok sets zero here and confirms it.",
+  ESTOP: "Release the emergency stop, then press clear.",
+  LIMIT: "Press clear, then jog off the switch.",
+  SOFT_LIMIT: "The move would exceed the soft limits. Press clear.",
+  HOMING: "Homing did not find the switch. Press clear.",
+  TRUST: "The position is lost. Press clear, then @.",
+  TIMEOUT: "The wait for the input timed out. Press clear.",
+  MEMORY: "The memory is invalid. Press clear, then @.",
+  LOST: "The position is lost. To set it, @.",
+  HELD: "The position is restored, but not confirmed. To set zero here, press debug, then ok.",
 };
 
-/** What to do next, if anything. @param {Word} word @param {boolean} hasHome  Whether homing is set up. */
+/** The next action for the user; empty if there is none. @param {Word} word @param {boolean} hasHome  Whether homing is set up. */
 export function advice({ state, alarm, trust }, hasHome) {
-  const known = `${hasHome ? "home, or " : ""}jog to a known position, then debug, ok`;
-  return state === "OFF" ? "" : (ADVICE[alarm] ?? ADVICE[trust] ?? "").replace("@", known);
+  const howToSet = `${hasHome ? "press home, or " : ""}jog to a known position and press debug, then ok`;
+  return state === "OFF" ? "" : (ADVICE[alarm] ?? ADVICE[trust] ?? "").replace("@", howToSet);
 }
 
 /** The state of a panel as text. @param {Word} word @param {{groups: number, loops: number}} program */

@@ -1,14 +1,14 @@
 /** Draws the rows of a panel over time: state, inputs and script. */
 import { si } from "../../state/number.js";
 import { color, font } from "../../time/plot.js";
-import { read, STATES, TRUST } from "./names.js";
+import { POSITION, read, STATES, TRUST } from "./names.js";
 import { lastUpTo } from "./story.js";
 import { ROW_PX, TIME_PX } from "./strip_layout.js";
 
 /** @typedef {{left: number, right: number}} Plot */
-/** @typedef {{context: CanvasRenderingContext2D, plot: Plot, start: number, end: number, last: number}} Ground  What is drawn on: `last` is the run's end. */
+/** @typedef {{context: CanvasRenderingContext2D, plot: Plot, start: number, end: number, last: number}} Ground  The canvas and its visible time; `last` is the last cycle of the run. */
 
-/** The ink of each state: what moves, what waits, what rests, what is wrong. */
+/** The color of each state. */
 const INKS = [
   "--axis",
   "--axis",
@@ -34,11 +34,11 @@ const TRUST_INKS = ["--error", "--dir", "--enable"];
 export const xOf = ({ plot, start, end }, cycle) =>
   plot.left + ((cycle - start) / (end - start)) * (plot.right - plot.left);
 
-/** What a band says in a record, and in which ink. @param {Band} band @param {number} word @returns {[string, string]} */
-function wordOf(band, word) {
+/** Text and color of a record in a band. @param {Band} band @param {number} word @returns {[text: string, ink: string]} */
+function labelOf(band, word) {
   const { state, alarm, trust, group, loop } = read(word);
   if (band === "state") return [alarm ? `${state} ${alarm}` : state, INKS[STATES.indexOf(state)]];
-  if (band === "trust") return [state === "OFF" ? "" : trust, TRUST_INKS[TRUST.indexOf(trust)]];
+  if (band === "position") return [state === "OFF" ? "" : (POSITION[trust] ?? trust), TRUST_INKS[TRUST.indexOf(trust)]];
   const shown = band === "group" ? group : loop;
   return [shown && state !== "EDIT" ? String(shown) : "", "--tick"];
 }
@@ -50,13 +50,13 @@ export function paintBand(ground, records, band, top) {
   let at = Math.max(0, lastUpTo(records, start, 4));
   let drawn = plot.left;
   while (at < count && records[4 * at] < end) {
-    const [text, ink] = wordOf(band, records[4 * at + 1]);
+    const [text, ink] = labelOf(band, records[4 * at + 1]);
     let next = at + 1;
-    while (next < count && wordOf(band, records[4 * next + 1])[0] === text) next += 1;
+    while (next < count && labelOf(band, records[4 * next + 1])[0] === text) next += 1;
     const until = next < count ? records[4 * next] : last;
     const left = Math.max(drawn, xOf(ground, records[4 * at]));
     const right = Math.min(plot.right, xOf(ground, until));
-    // What is thinner than a pixel is there, too; more of it in that pixel are not to be told apart.
+    // A record narrower than a pixel is drawn one pixel wide; further ones in that pixel are skipped.
     if (text && right >= drawn) {
       const wide = Math.max(1, right - left);
       context.globalAlpha = 0.22;
@@ -70,7 +70,7 @@ export function paintBand(ground, records, band, top) {
     drawn = Math.max(drawn, Math.floor(right));
     at = next;
     if (drawn >= plot.right) break;
-    // In a pixel that is full all of its records are passed at once.
+    // Skips all records within the same pixel.
     if (right - left < 1)
       at = Math.max(
         at,
@@ -79,7 +79,7 @@ export function paintBand(ground, records, band, top) {
   }
 }
 
-/** Text where it has room. @param {CanvasRenderingContext2D} context @param {string} text @param {number} x @param {number} top @param {number} room */
+/** Draws a text if there is room for it. @param {CanvasRenderingContext2D} context @param {string} text @param {number} x @param {number} top @param {number} room */
 function label(context, text, x, top, room) {
   if (room < 10 || context.measureText(text).width > room) return;
   context.fillStyle = color("--ink");
@@ -118,7 +118,7 @@ export function paintLevel(ground, changes, initial, top) {
   context.stroke();
 }
 
-/** An entry of the script: a diamond that can be taken. @param {CanvasRenderingContext2D} context @param {number} x @param {number} top @param {boolean} selected */
+/** An entry of the script as a diamond, which can be dragged. @param {CanvasRenderingContext2D} context @param {number} x @param {number} top @param {boolean} selected */
 export function paintEntry(context, x, top, selected) {
   const [y, reach] = [top + ROW_PX / 2, selected ? 6 : 4];
   context.beginPath();
@@ -147,7 +147,7 @@ export function paintIgnored(context, x, top) {
   context.stroke();
 }
 
-/** Name of a row, in the gutter. @param {CanvasRenderingContext2D} context @param {string} name @param {number} right @param {number} top @param {boolean} selected */
+/** The name of a row, left of the plotting area. @param {CanvasRenderingContext2D} context @param {string} name @param {number} right @param {number} top @param {boolean} selected */
 export function paintName(context, name, right, top, selected) {
   context.font = `${selected ? "bold " : ""}11px ${font()}`;
   context.textAlign = "right";
@@ -157,23 +157,23 @@ export function paintName(context, name, right, top, selected) {
   context.font = `11px ${font()}`;
 }
 
-/** @typedef {{start: number, end: number, min: Float64Array, max: Float64Array}} Curve  Steps in columns, and the cycles that they are of. */
+/** @typedef {{start: number, end: number, min: Float64Array, max: Float64Array}} Curve  Positions in columns, in steps, and their range of cycles. */
 
-/** The position over time, with its least and its greatest value. @param {Ground} ground @param {Curve} curve @param {number} tall @param {(steps: number) => string} print */
-export function paintCurve(ground, curve, tall, print) {
+/** The position over time, with its minimum and maximum. @param {Ground} ground @param {Curve} curve @param {number} height @param {(steps: number) => string} print */
+export function paintCurve(ground, curve, height, print) {
   const { context, plot } = ground;
   let [low, high] = [Infinity, -Infinity];
   for (const value of curve.min) low = Math.min(low, value);
   for (const value of curve.max) high = Math.max(high, value);
   if (low > high) return;
-  // Over it stands what it is.
-  const [top, bottom] = [18, tall - 8];
+  // Leaves space for the caption above.
+  const [top, bottom] = [18, height - 8];
   const y = (/** @type {number} */ value) =>
     high > low ? bottom - ((value - low) / (high - low)) * (bottom - top) : bottom;
   const column = (curve.end - curve.start) / curve.min.length;
   context.save();
   context.beginPath();
-  context.rect(plot.left, 0, plot.right - plot.left, tall);
+  context.rect(plot.left, 0, plot.right - plot.left, height);
   context.clip();
   context.strokeStyle = color("--actual");
   context.lineWidth = 1.6;
@@ -181,7 +181,7 @@ export function paintCurve(ground, curve, tall, print) {
   for (let at = 0; at < curve.min.length; at += 1) {
     const x = xOf(ground, curve.start + (at + 0.5) * column);
     if (at === 0) context.moveTo(x, y(curve.min[at]));
-    // The nearer end first, so that the line goes through a column once.
+    // The nearer end first, so that the line passes each column once.
     const rises = at === 0 || curve.max[at] >= curve.max[at - 1];
     context.lineTo(x, y(rises ? curve.min[at] : curve.max[at]));
     context.lineTo(x, y(rises ? curve.max[at] : curve.min[at]));
@@ -193,20 +193,20 @@ export function paintCurve(ground, curve, tall, print) {
   for (const value of new Set([low, high])) paintName(context, print(value), plot.left, y(value) - ROW_PX / 2, false);
 }
 
-/** Round times under the rows. @param {Ground} ground @param {number} clock @param {number} top @param {number} bottom */
+/** Round times below the rows. @param {Ground} ground @param {number} clock @param {number} top @param {number} bottom */
 export function paintTime(ground, clock, top, bottom) {
   const { context, plot, start, end } = ground;
-  const most = Math.max(2, Math.floor((plot.right - plot.left) / 90));
-  const least = (end - start) / clock / most;
-  const power = 10 ** Math.floor(Math.log10(least));
-  const rung = [1, 2, 5, 10].map((factor) => factor * power).find((each) => each >= least) ?? least;
+  const maxLabels = Math.max(2, Math.floor((plot.right - plot.left) / 90));
+  const minStep = (end - start) / clock / maxLabels;
+  const power = 10 ** Math.floor(Math.log10(minStep));
+  const step = [1, 2, 5, 10].map((factor) => factor * power).find((each) => each >= minStep) ?? minStep;
   context.textAlign = "center";
-  for (let number = Math.ceil(start / clock / rung); number * rung * clock <= end; number += 1) {
-    const x = xOf(ground, number * rung * clock);
+  for (let number = Math.ceil(start / clock / step); number * step * clock <= end; number += 1) {
+    const x = xOf(ground, number * step * clock);
     context.fillStyle = color("--grid");
     context.fillRect(Math.round(x), top, 1, bottom - top);
     context.fillStyle = color("--quiet");
-    context.fillText(si(number * rung, "s", 6), x, bottom + TIME_PX / 2);
+    context.fillText(si(number * step, "s", 6), x, bottom + TIME_PX / 2);
   }
   context.textAlign = "left";
 }

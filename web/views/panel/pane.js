@@ -1,8 +1,8 @@
 /** The pane of the panel view; loads panel.js on demand. */
-import { createLater } from "../later.js";
+import { createLazyView } from "../later.js";
 
 /** @typedef {import("../later.js").Page} Page */
 
 /** @param {Page} page */
 export const createPanelPane = (page) =>
-  createLater(page, "panel", async (page) => (await import("./panel.js")).createPanel(page));
+  createLazyView(page, "panel", async (page) => (await import("./panel.js")).createPanel(page));

@@ -2,11 +2,11 @@
  * The panel view: the front panel at the cursor, its inputs over time, and its axis. Presses become inputs of the
  * scenario.
  */
-import { byId, element, fill, say, style } from "../../dom.js";
+import { byId, element, fill, loadStyle, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short } from "../../state/number.js";
 import { endOf } from "../../state/time_window.js";
-import { overlaid } from "../../time/cursors.js";
+import { hasOverlayChanged } from "../../time/cursors.js";
 import { reveal } from "../../time/timeline.js";
 import { createAxis } from "./axis.js";
 import { createEntryLine } from "./entry_line.js";
@@ -21,15 +21,15 @@ import { createStrip } from "./strip.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./script.js").Placed} Placed */
 
-/** Height that the lines under the rows, and the cursors' handles, take beside the axis, in CSS pixels. */
+/** Height of the lines below the rows and of the cursor handles, in CSS pixels. */
 const LINES_PX = 24 + 90;
 
 /** @param {import("./pane.js").Page} page */
 export async function createPanel({ engine, dispatch, now }) {
-  await style("panel");
+  await loadStyle("panel");
   const view = byId("view-panel");
-  const played = () => (live.isOn() ? live.cycle() : null);
-  const editor = createScriptEditor({ report, played, dispatch, now });
+  const playedCycle = () => (live.isOn() ? live.cycle() : null);
+  const editor = createScriptEditor({ report, played: playedCycle, dispatch, now });
   const { clock, panels, index, panel, timeOf } = editor;
 
   const head = createHead(/** @type {Element} */ (view.querySelector(".head")?.firstElementChild), {
@@ -40,8 +40,8 @@ export async function createPanel({ engine, dispatch, now }) {
   });
   const front = element("div", { class: "front", role: "group", "aria-label": "Front panel" });
   const status = element("p", { id: "panel-status", class: "panel-status", role: "status" });
-  const axisPlace = element("div", { class: "axis", role: "group", "aria-label": "Virtual axis" });
-  const stripPlace = element("div", { class: "strip" });
+  const axisRoot = element("div", { class: "axis", role: "group", "aria-label": "Virtual axis" });
+  const stripRoot = element("div", { class: "strip" });
   const line = createEntryLine({
     ...{ clock, timeOf, report },
     move(placed, cycle) {
@@ -51,7 +51,7 @@ export async function createPanel({ engine, dispatch, now }) {
     },
     remove(placed) {
       remove(placed);
-      stripPlace.querySelector("canvas")?.focus();
+      stripRoot.querySelector("canvas")?.focus();
     },
   });
   const ignored = element("details", { class: "ignored", hidden: "" }, element("summary", {}), element("ul", {}));
@@ -63,14 +63,14 @@ export async function createPanel({ engine, dispatch, now }) {
   );
   const body = element("div", { class: "panel-body" });
   view.append(body);
-  /** Whether the rows are next to the front. */
+  /** Whether the rows are next to the front panel. */
   const isWide = matchMedia("(min-width: 1100px)");
-  fill(body, front, element("div", { class: "time-side" }, axisPlace, stripPlace, ...line.parts, ignored, wear, keys));
+  fill(body, front, element("div", { class: "time-side" }, axisRoot, stripRoot, ...line.parts, ignored, wear, keys));
 
   /** @type {import("./story.js").Story | null} */
   let story = null;
   /** The result and the controller of the story. @type {{result: State["result"], index: number} | null} */
-  let storyOf = null;
+  let storySource = null;
   /** @type {Placed | null} */
   let selected = null;
 
@@ -79,7 +79,7 @@ export async function createPanel({ engine, dispatch, now }) {
     speed: head.speed,
     shortest: editor.shortest,
     at(cycle) {
-      // Out of sight it does not go on.
+      // A hidden panel stops.
       if (panels().length === 0 || !view.checkVisibility()) {
         live.stop();
         return showLive();
@@ -101,14 +101,14 @@ export async function createPanel({ engine, dispatch, now }) {
     },
     set: editor.set,
   });
-  // Over the buttons, where it stays in sight, in place of the advice.
+  // Above the buttons, where it is always visible; it replaces the advice.
   front.querySelector(".panel-messages")?.prepend(status);
-  const axis = createAxis(axisPlace, editor.push);
-  const strip = createStrip(stripPlace, {
+  const axis = createAxis(axisRoot, editor.push);
+  const strip = createStrip(stripRoot, {
     ...{ engine, dispatch, now, remove },
     move: editor.move,
     entries: editor.entries,
-    room: () => (isWide.matches ? body.clientHeight - axisPlace.offsetHeight - LINES_PX : 0),
+    availableHeight: () => (isWide.matches ? body.clientHeight - axisRoot.offsetHeight - LINES_PX : 0),
     channel: index,
     print: (steps) => short(steps / (panel()?.pulses_per_unit || 1), 6),
     selected(placed) {
@@ -120,7 +120,7 @@ export async function createPanel({ engine, dispatch, now }) {
   /** @param {string} text @param {boolean} [isError] */
   function report(text, isError = false) {
     status.classList.toggle("error", isError);
-    say(status, text);
+    setText(status, text);
   }
 
   function showLine() {
@@ -149,17 +149,17 @@ export async function createPanel({ engine, dispatch, now }) {
 
   /** @param {State} state */
   async function loadStory(state) {
-    const of = { result: state.result, index: index() };
-    const reply = await engine.latest("panel", "panel", of.index).catch(unlessDropped);
-    if (reply === undefined || now().result !== of.result) return;
-    storyOf = of;
+    const source = { result: state.result, index: index() };
+    const reply = await engine.latest("panel", "panel", source.index).catch(unlessDropped);
+    if (reply === undefined || now().result !== source.result) return;
+    storySource = source;
     story = reply && storyFrom(reply);
     body.hidden = story === null;
-    say(byId("panel-note"), !story && state.result ? "This experiment has no stand-alone controller." : "");
+    setText(byId("panel-note"), !story && state.result ? "This experiment has no stand-alone controller." : "");
     if (!story) return;
-    const drawn = strip.show(story, storyLabel(story, of.index));
+    const drawn = strip.show(story, storyLabel(story, source.index));
     showIgnored(story);
-    say(wear, wearText(story));
+    setText(wear, wearText(story));
     await Promise.all([drawn, draw(state)]);
   }
 
@@ -167,27 +167,27 @@ export async function createPanel({ engine, dispatch, now }) {
   function showIgnored(story) {
     const { title, items, more } = ignoredPresses(story, Boolean(panel()?.home), timeOf);
     ignored.hidden = items.length === 0;
-    say(/** @type {Element} */ (ignored.firstElementChild), title);
+    setText(/** @type {Element} */ (ignored.firstElementChild), title);
     const buttons = items.map(({ cycle, text }) => {
-      const go = element("button", { type: "button" }, text);
-      go.addEventListener("click", () => {
+      const link = element("button", { type: "button" }, text);
+      link.addEventListener("click", () => {
         dispatch({ type: "cursor", which: "a", cycle });
         reveal({ dispatch, now }, cycle);
       });
-      return element("li", {}, go);
+      return element("li", {}, link);
     });
-    const rest = more ? [element("li", {}, more)] : [];
-    fill(/** @type {Element} */ (ignored.lastElementChild), ...buttons, ...rest);
+    const moreItem = more ? [element("li", {}, more)] : [];
+    fill(/** @type {Element} */ (ignored.lastElementChild), ...buttons, ...moreItem);
   }
 
   /** The panel at the visible cycle. @param {State} state */
   async function draw(state) {
     strip.paintCursor(state);
-    const { cycle, name } = shownCycle(state, played());
+    const { cycle, name } = shownCycle(state, playedCycle());
     head.showTime(`${name}: ${timeOf(cycle)}`, live.isOn() || state.cursors.a === null);
-    const inside = Math.min(cycle, endOf(state));
-    const reply = await engine.latest("panel at", "panel_at", index(), inside).catch(unlessDropped);
-    if (!reply || storyOf?.result !== now().result) return;
+    const cycleInRun = Math.min(cycle, endOf(state));
+    const reply = await engine.latest("panel at", "panel_at", index(), cycleInRun).catch(unlessDropped);
+    if (!reply || storySource?.result !== now().result) return;
     const moment = momentFrom(reply);
     faces.show(moment, (input) => levelAt(story, input, cycle), panel());
     axis.show(moment, panel()?.axis, story?.records ?? new Float64Array());
@@ -205,12 +205,12 @@ export async function createPanel({ engine, dispatch, now }) {
       if (selected) strip.choose(editor.same(selected));
       else strip.paint();
       showLine();
-      // The report is of a change that may be undone by now.
+      // The reported change may have been undone.
       if (before && !editor.isChanging()) report("");
     }
-    if (storyOf?.result !== state.result || storyOf?.index !== index()) return loadStory(state);
-    if (before?.window !== state.window) return Promise.all([strip.window(), draw(state)]);
-    return overlaid(before, state) ? draw(state) : undefined;
+    if (storySource?.result !== state.result || storySource?.index !== index()) return loadStory(state);
+    if (before?.window !== state.window) return Promise.all([strip.updateWindow(), draw(state)]);
+    return hasOverlayChanged(before, state) ? draw(state) : undefined;
   }
   return { render };
 }

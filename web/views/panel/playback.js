@@ -1,15 +1,17 @@
 /** Live mode of a panel: the cursor follows the clock, and held buttons become inputs. */
 
-/** A release that is to come stands so far ahead, in s of a person's time. */
+/** While a button is held, its release is planned this far ahead, in s of real time. */
 const AHEAD_S = 1;
+/** Maximum time between two frames, in ms. */
+const MAX_FRAME_MS = 100;
 
 /**
- * @param {object} given
- * @param {() => number} given.hz  Cycles a second.
- * @param {() => number} given.speed  1 is real time.
- * @param {(cycle: number) => void} given.at  Hears where it is.
- * @param {(input: string, from: number, until: number, before: number | null) => boolean} given.press  Puts a press, or moves the release of one that was put; whether it could.
- * @param {() => number} given.shortest  Cycles that a press lasts at least.
+ * @param {object} panel
+ * @param {() => number} panel.hz  Cycles per second.
+ * @param {() => number} panel.speed  1 is real time.
+ * @param {(cycle: number) => void} panel.at  Called with the current cycle.
+ * @param {(input: string, from: number, until: number, before: number | null) => boolean} panel.press  Adds a press, or moves its release from `before` to `until`. Returns whether that was possible.
+ * @param {() => number} panel.shortest  Minimum cycles of a press.
  */
 export function createPlayback({ hz, speed, at, press, shortest }) {
   let frame = 0;
@@ -22,13 +24,13 @@ export function createPlayback({ hz, speed, at, press, shortest }) {
 
   /** @param {number} now */
   function tick(now) {
-    // A tab that was away has not been played.
-    cycle += (Math.min(100, now - last) / 1000) * speed() * hz();
+    // A hidden tab does not play, so the time since the last frame is limited.
+    cycle += (Math.min(MAX_FRAME_MS, now - last) / 1000) * speed() * hz();
     last = now;
-    for (const [input, one] of held) {
-      if (one.until - cycle < ahead() / 2) {
+    for (const [input, heldPress] of held) {
+      if (heldPress.until - cycle < ahead() / 2) {
         const until = Math.round(cycle) + ahead();
-        if (press(input, one.from, until, one.until)) one.until = until;
+        if (press(input, heldPress.from, until, heldPress.until)) heldPress.until = until;
       }
     }
     frame = requestAnimationFrame(tick);
@@ -37,10 +39,10 @@ export function createPlayback({ hz, speed, at, press, shortest }) {
 
   /** @param {string} input */
   function up(input) {
-    const one = held.get(input);
-    if (!one) return;
+    const heldPress = held.get(input);
+    if (!heldPress) return;
     held.delete(input);
-    press(input, one.from, Math.max(Math.round(cycle), one.from + shortest()), one.until);
+    press(input, heldPress.from, Math.max(Math.round(cycle), heldPress.from + shortest()), heldPress.until);
   }
 
   return {

@@ -1,4 +1,4 @@
-/** Dispatches changes of scripts and reports the result. No DOM. */
+/** Changes scripts and reports the results. No DOM. */
 import { exactTime } from "../../state/number.js";
 import { levelText, pressCycle, pressText, pushText, shortestPress, whyNoPush } from "./presses.js";
 import { entriesOf, inputsOf, moved, nameOf, ownerOf, press, put, sameEntry } from "./script.js";
@@ -7,7 +7,7 @@ import { entriesOf, inputsOf, moved, nameOf, ownerOf, press, put, sameEntry } fr
 
 /**
  * @param {{report: (text: string, isError?: boolean) => void, played: () => number | null} & import("../../state/types.js").Page} page
- *   `played` is the cycle of the playback, null while it is off.
+ *   `played`: the cycle of the playback, null while it is off.
  */
 export function createScriptEditor({ report, played, dispatch, now }) {
   let isChanging = false;
@@ -20,8 +20,8 @@ export function createScriptEditor({ report, played, dispatch, now }) {
   const timeOf = (/** @type {number} */ cycle) => exactTime(cycle, clock());
   const target = () => pressCycle(now(), played(), clock());
 
-  /** Replaces the script of a controller, or reports why not. @param {number} owner @param {import("./script.js").Changed} changed @param {boolean} [joins] */
-  function take(owner, changed, joins = false) {
+  /** Replaces the script of a controller, or reports the error. @param {number} owner @param {import("./script.js").Changed} changed @param {boolean} [joins]  Whether it joins the last step of undo. */
+  function apply(owner, changed, joins = false) {
     if ("refused" in changed) {
       report(changed.refused, true);
       return false;
@@ -33,8 +33,8 @@ export function createScriptEditor({ report, played, dispatch, now }) {
     return true;
   }
 
-  /** The cursor goes behind a new press, so that the next one comes after it and its effect is shown. @param {number} cycle @param {string} text */
-  function goBehind(cycle, text) {
+  /** Moves the cursor behind a new press, so that its effect is visible and the next press follows it. @param {number} cycle @param {string} text */
+  function moveCursorBehind(cycle, text) {
     if (now().cursors.a !== null) dispatch({ type: "cursor", which: "a", cycle: cycle + shortest() });
     report(text);
   }
@@ -47,54 +47,54 @@ export function createScriptEditor({ report, played, dispatch, now }) {
     /** @param {Placed} placed */
     same: (placed) => sameEntry(panels(), placed),
 
-    /** A button that is pressed and released. @param {string} input @param {number} cycles */
+    /** Adds a press of a button. @param {string} input @param {number} cycles */
     click(input, cycles) {
       const owner = ownerOf(index(), input);
       const from = target();
       const until = from + cycles;
-      if (take(owner, press(inputsOf(panels(), owner), input, from, until, panel()?.axis, timeOf)))
-        goBehind(until, pressText(input, timeOf(from), cycles / clock()));
+      if (apply(owner, press(inputsOf(panels(), owner), input, from, until, panel()?.axis, timeOf)))
+        moveCursorBehind(until, pressText(input, timeOf(from), cycles / clock()));
     },
 
-    /** A switch. @param {string} input @param {number} level */
+    /** Sets a switch. @param {string} input @param {number} level */
     set(input, level) {
       const owner = ownerOf(index(), input);
       const cycle = target();
-      if (take(owner, put(inputsOf(panels(), owner), { cycle, input, level }, panel()?.axis, timeOf)))
-        goBehind(cycle, levelText(input, level, timeOf(cycle)));
+      if (apply(owner, put(inputsOf(panels(), owner), { cycle, input, level }, panel()?.axis, timeOf)))
+        moveCursorBehind(cycle, levelText(input, level, timeOf(cycle)));
     },
 
-    /** A push of the axis by hand. @param {number} steps */
+    /** Adds a push of the axis by hand. @param {number} steps */
     push(steps) {
       const why = whyNoPush(steps);
       if (why) return report(why, true);
       const cycle = target();
       const entry = { cycle, input: null, level: 1, push_steps: steps };
-      if (take(index(), put(inputsOf(panels(), index()), entry, null, timeOf)))
-        goBehind(cycle, pushText(steps, timeOf(cycle)));
+      if (apply(index(), put(inputsOf(panels(), index()), entry, null, timeOf)))
+        moveCursorBehind(cycle, pushText(steps, timeOf(cycle)));
       return undefined;
     },
 
-    /** A press of the playback, or another release of it. @param {string} input @param {number} from @param {number} until @param {number | null} before  The release that is replaced. */
+    /** Adds a press during the playback, or moves its release. @param {string} input @param {number} from @param {number} until @param {number | null} before  The previous release. */
     hold(input, from, until, before) {
       const owner = ownerOf(index(), input);
       const inputs = inputsOf(panels(), owner);
-      if (before === null) return take(owner, press(inputs, input, from, until, panel()?.axis, timeOf), true);
+      if (before === null) return apply(owner, press(inputs, input, from, until, panel()?.axis, timeOf), true);
       const place = inputs.findIndex((each) => each.input === input && each.level === 0 && each.cycle === before);
-      return place >= 0 && take(owner, moved(inputs, place, until, timeOf), true);
+      return place >= 0 && apply(owner, moved(inputs, place, until, timeOf), true);
     },
 
-    /** @param {Placed} placed @param {number} cycle @param {boolean} joins @returns {Placed | null}  Where it is then. */
+    /** @param {Placed} placed @param {number} cycle @param {boolean} joins @returns {Placed | null}  The moved entry; null if it could not be moved. */
     move({ owner, index: from }, cycle, joins) {
       const to = moved(inputsOf(panels(), owner), from, cycle, timeOf);
-      if (!take(owner, to, joins) || "refused" in to) return null;
+      if (!apply(owner, to, joins) || "refused" in to) return null;
       const place = to.index ?? from;
       return { owner, index: place, entry: to.inputs[place] };
     },
 
     /** @param {Placed} placed */
     remove({ owner, index: from, entry }) {
-      take(owner, { inputs: inputsOf(panels(), owner).toSpliced(from, 1) });
+      apply(owner, { inputs: inputsOf(panels(), owner).toSpliced(from, 1) });
       report(`${nameOf(entry)} at ${timeOf(entry.cycle)} is removed.`);
     },
   };

@@ -1,7 +1,7 @@
 /** The rows of a panel over time, with draggable script entries. */
 import { element } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { listen } from "../../shell/commands.js";
+import { registerCommands } from "../../shell/commands.js";
 import { shown } from "../../state/time_window.js";
 import { drawCursors } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
@@ -15,17 +15,17 @@ import { paintStrip } from "./strip_picture.js";
 /** @typedef {import("./script.js").Entry} Entry */
 /** @typedef {import("./script.js").Placed} Placed */
 /**
- * @typedef {object} Script  What the strip asks and does.
- * @property {() => Placed[]} entries  All that this panel hears, in the order of time.
- * @property {(placed: Placed, cycle: number, joins: boolean) => Placed | null} move  Where it is then; null where it could not go.
+ * @typedef {object} Script  The script of the panel.
+ * @property {() => Placed[]} entries  All entries for this panel, in the order of time.
+ * @property {(placed: Placed, cycle: number, joins: boolean) => Placed | null} move  Returns the moved entry; null if it could not be moved.
  * @property {(placed: Placed) => void} remove
  */
 
-/** What a fast key moves an entry by, in columns of pixels. */
+/** Columns of pixels of a fast movement. */
 const FAST = 10;
 
-/** @param {HTMLElement} place @param {Script & import("./pane.js").Page & {selected: (placed: Placed | null) => void, print: (steps: number) => string, room: () => number, channel: () => number}} page  `print` says a position, `room` how tall it all may be. */
-export function createStrip(place, page) {
+/** @param {HTMLElement} root @param {Script & import("./pane.js").Page & {selected: (placed: Placed | null) => void, print: (steps: number) => string, availableHeight: () => number, channel: () => number}} page  `print` prints a position. */
+export function createStrip(root, page) {
   const { engine, dispatch, now } = page;
   const canvas = element("canvas", {
     tabindex: "0",
@@ -36,7 +36,7 @@ export function createStrip(place, page) {
   const overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
   const strip = element("div", { class: "handles" });
   const stack = element("div", { class: "panel-rows" }, canvas, overlay);
-  place.append(strip, stack);
+  root.append(strip, stack);
   let plot = { left: GUTTER, right: GUTTER + 1 };
   const handles = createHandles(strip, () => plot, { dispatch, now });
   /** @type {import("./story.js").Story | null} */
@@ -45,24 +45,24 @@ export function createStrip(place, page) {
   let curve = null;
   /** @type {string[]} */
   let rows = [];
-  /** Height of the position's curve. */
+  /** Height of the position curve. */
   let curvePx = 0;
   /** @type {Placed | null} */
   let selected = null;
-  /** What is dragged, and how far the pointer was from it. @type {{placed: Placed, by: number, moved: boolean} | null} */
+  /** The dragged entry, and its distance from the pointer in CSS pixels. @type {{placed: Placed, by: number, moved: boolean} | null} */
   let drag = null;
 
   onTimeAxis(stack, () => plot, { dispatch, now });
-  watch(/** @type {Element} */ (place.closest(".panel-body")), () => {
+  watch(/** @type {Element} */ (root.closest(".panel-body")), () => {
     paint();
-    void curveOf(now());
+    void loadCurve(now());
   });
 
   const xIn = (/** @type {MouseEvent} */ event) => event.clientX - canvas.getBoundingClientRect().left;
 
   /** @param {Placed | null} placed */
   function choose(placed) {
-    // Another one's moves are a change of their own.
+    // Moves of another input are a new step of undo.
     if (placed?.entry.input !== selected?.entry.input || placed === null) dispatch({ type: "committed" });
     selected = placed;
     page.selected(placed);
@@ -81,7 +81,7 @@ export function createStrip(place, page) {
   canvas.addEventListener("pointerdown", (event) => {
     const placed = event.button === 0 ? entryUnder(event) : null;
     if (!placed) return;
-    // The time axis under it stays.
+    // The time axis must not be dragged, too.
     event.stopPropagation();
     event.preventDefault();
     canvas.focus();
@@ -110,7 +110,7 @@ export function createStrip(place, page) {
       dispatch({ type: "committed" });
     });
 
-  /** Chooses the next or the previous entry. @param {number} by */
+  /** Selects the next or the previous entry. @param {number} by */
   function step(by) {
     const to = entryAfter(page.entries(), selected, by);
     if (!to) return;
@@ -118,7 +118,7 @@ export function createStrip(place, page) {
     reveal(page, to.entry.cycle);
   }
 
-  /** Chooses an entry of the row below or above. @param {number} by */
+  /** Selects an entry of the row below or above. @param {number} by */
   function stepRow(by) {
     const to = entryBelow(page.entries(), rows, selected, by);
     if (to) choose(to);
@@ -133,15 +133,15 @@ export function createStrip(place, page) {
     if (to) choose(to);
   }
 
-  listen(canvas, "Rows of the panel", [
+  registerCommands(canvas, "Rows of the panel", [
     { keys: ["n"], text: "next input", run: () => step(1) },
     { keys: ["p"], text: "previous input", run: () => step(-1) },
     { keys: ["ArrowDown"], text: "input of the row below", run: () => stepRow(1) },
     { keys: ["ArrowUp"], text: "input of the row above", run: () => stepRow(-1) },
     { keys: [","], text: "move the selected input earlier", run: () => nudge(-1) },
     { keys: ["."], text: "move the selected input later", run: () => nudge(1) },
-    { keys: ["<"], text: "much earlier", run: () => nudge(-FAST) },
-    { keys: [">"], text: "much later", run: () => nudge(FAST) },
+    { keys: ["<"], text: "move it much earlier", run: () => nudge(-FAST) },
+    { keys: [">"], text: "move it much later", run: () => nudge(FAST) },
     {
       keys: ["Enter"],
       text: "move cursor A to the selected input",
@@ -162,7 +162,7 @@ export function createStrip(place, page) {
     if (!story || stack.clientWidth < 60) return;
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     rows = rowsOf(story.inputs.keys(), page.entries());
-    const { curve: curveHeight, all: tall } = heights(page.room(), rows);
+    const { curve: curveHeight, all: tall } = heights(page.availableHeight(), rows);
     curvePx = curveHeight;
     stack.style.height = `${tall + TIME_PX}px`;
     const { ratio } = fit(canvas);
@@ -180,8 +180,8 @@ export function createStrip(place, page) {
     paintCursor(state);
   }
 
-  /** Requests the position over what is shown. @param {State} state */
-  async function curveOf(state) {
+  /** Requests the position during the visible time. @param {State} state */
+  async function loadCurve(state) {
     const { result } = state;
     if (!result || stack.clientWidth < 60) return;
     const { start, end } = shown(state);
@@ -206,19 +206,19 @@ export function createStrip(place, page) {
   return {
     paint,
     paintCursor,
-    /** The entry that a person has selected; another one after the script has changed. @param {Placed | null} placed */
+    /** Selects an entry. @param {Placed | null} placed */
     choose,
     /** @param {import("./story.js").Story} next @param {string} about */
     show(next, about) {
       story = next;
       canvas.setAttribute("aria-label", about);
       paint();
-      return curveOf(now());
+      return loadCurve(now());
     },
-    /** What is shown is another time. */
-    window() {
+    /** Redraws after a change of the visible time. */
+    updateWindow() {
       paint();
-      return curveOf(now());
+      return loadCurve(now());
     },
   };
 }

@@ -1,4 +1,5 @@
 /** Draws the strip: position, bands, inputs and script. */
+import { shortInputLabel } from "./names.js";
 import { paintBand, paintCurve, paintEntry, paintIgnored, paintLevel, paintName, paintTime, xOf } from "./paint.js";
 import { BANDS, PUSH, ROW_PX, rowOf } from "./strip_layout.js";
 
@@ -26,12 +27,18 @@ export function paintStrip(ground, { story, curve, rows, entries, selected, cloc
   const selectedRow = selected && rowOf(rows, selected.entry);
   for (const [at, input] of rows.entries()) {
     const top = topOf(BANDS.length + at);
-    paintName(context, input, plot.left, top, BANDS.length + at === selectedRow);
+    paintName(
+      context,
+      input === PUSH ? input : shortInputLabel(input),
+      plot.left,
+      top,
+      BANDS.length + at === selectedRow,
+    );
     if (input !== PUSH) paintLevel(ground, story.inputs.get(input), input === "power" ? 1 : 0, top);
     for (const press of story.ignored)
       if (press.input === input && isShown(press.cycle)) paintIgnored(context, xOf(ground, press.cycle), top);
   }
-  /** Where the last entry of each row is. @type {Map<number, number>} */
+  /** Pixel of the last drawn entry of each row. @type {Map<number, number>} */
   const last = new Map();
   for (const { entry, owner, index } of entries) {
     if (!isShown(entry.cycle)) continue;

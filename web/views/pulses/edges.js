@@ -1,5 +1,5 @@
 /** The table of edges, one page at a time. */
-import { byId, element, fill, say } from "../../dom.js";
+import { byId, element, fill, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, time } from "../../state/number.js";
 import { shown } from "../../state/time_window.js";
@@ -8,8 +8,8 @@ import { nameOf } from "./rows.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").EdgeRow} EdgeRow */
 
-/** Edges of a page; with the last one come all of its cycle. */
-const PAGE = 50;
+/** Minimum edges of a page; it also has all other edges of the last cycle. */
+const PAGE_EDGES = 50;
 
 /** @param {{engine: import("../../engine/engine.js").Engine, now: () => State}} page */
 export function createEdges({ engine, now }) {
@@ -19,27 +19,27 @@ export function createEdges({ engine, now }) {
   /** @type {EdgeRow[]} */
   let rows = [];
 
-  const heads = ["time", "cycle", "signal", "then"].map((text, column) =>
+  const heads = ["time", "cycle", "signal", "level"].map((text, column) =>
     element("th", { scope: "col", ...(column < 2 ? { class: "number" } : {}) }, text),
   );
   fill(/** @type {Element} */ (panel.querySelector("thead")), element("tr", {}, ...heads));
-  which.addEventListener("change", fromShown);
-  byId("edges-from").addEventListener("click", fromShown);
-  earlier.addEventListener("click", () => turn(rows[0]?.cycle ?? 0, false));
-  later.addEventListener("click", () => turn(rows[rows.length - 1]?.cycle ?? -1, true));
+  which.addEventListener("change", showFromWindow);
+  byId("edges-from").addEventListener("click", showFromWindow);
+  earlier.addEventListener("click", () => showPage(rows[0]?.cycle ?? 0, false));
+  later.addEventListener("click", () => showPage(rows[rows.length - 1]?.cycle ?? -1, true));
 
-  /** Shows what begins with the shown time. */
-  function fromShown() {
-    return turn(shown(now()).start - 1, true);
+  /** Shows the edges from the start of the visible time. */
+  function showFromWindow() {
+    return showPage(shown(now()).start - 1, true);
   }
 
-  /** Shows the edges after a cycle, or before it. @param {number} cycle @param {boolean} forward */
-  async function turn(cycle, forward) {
+  /** Shows the edges after or before a cycle. @param {number} cycle @param {boolean} forward */
+  async function showPage(cycle, forward) {
     const bit = which.value === "row" ? now().row : undefined;
-    const reply = await engine.latest("edges", "edges", bit, cycle, forward, PAGE).catch(unlessDropped);
+    const reply = await engine.latest("edges", "edges", bit, cycle, forward, PAGE_EDGES).catch(unlessDropped);
     if (!reply) return;
     ({ rows } = reply);
-    // At the last page there may still be edges the other way.
+    // `more` only counts edges in the direction of the search.
     earlier.disabled = forward ? cycle < 0 : !reply.more;
     later.disabled = forward && !reply.more;
     paint(now());
@@ -48,7 +48,7 @@ export function createEdges({ engine, now }) {
   /** @param {State} state */
   function paint(state) {
     const clock = state.result?.summary.clock_hz ?? 1;
-    say(
+    setText(
       byId("edges-count"),
       rows.length === 0
         ? "No edge there."
@@ -71,7 +71,7 @@ export function createEdges({ engine, now }) {
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     if (!panel.open) return;
-    if (before?.result !== state.result || (before?.row !== state.row && which.value === "row")) fromShown();
+    if (before?.result !== state.result || (before?.row !== state.row && which.value === "row")) showFromWindow();
   }
-  return { render, fromShown };
+  return { render, showFromWindow };
 }

@@ -10,7 +10,7 @@ export function listMarkers(body, { dispatch, now }) {
   const set = markers
     .flatMap((cycle, digit) => (cycle === null ? [] : [{ digit, cycle }]))
     .sort((one, other) => one.cycle - other.cycle);
-  const apart = (/** @type {number | undefined | null} */ from, /** @type {number} */ to) =>
+  const timeSince = (/** @type {number | undefined | null} */ from, /** @type {number} */ to) =>
     from === null || from === undefined ? "–" : time((to - from) / clock);
   const remove = (/** @type {number} */ digit) => {
     dispatch({ type: "marker", digit, cycle: null });
@@ -28,9 +28,12 @@ export function listMarkers(body, { dispatch, now }) {
           {},
           button(String(digit), `Show marker ${digit}`, () => goToMarker({ dispatch, now }, digit)),
         ),
-        ...[time(cycle / clock), count(cycle), apart(set[index - 1]?.cycle, cycle), apart(cursors.a, cycle)].map(
-          (text) => element("td", { class: "number" }, text),
-        ),
+        ...[
+          time(cycle / clock),
+          count(cycle),
+          timeSince(set[index - 1]?.cycle, cycle),
+          timeSince(cursors.a, cycle),
+        ].map((text) => element("td", { class: "number" }, text)),
         element(
           "td",
           {},

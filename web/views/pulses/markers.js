@@ -1,5 +1,5 @@
 /** The markers 0 to 9 and their table (marker_list.js). */
-import { byId, element, fill, say } from "../../dom.js";
+import { byId, element, fill, setText } from "../../dom.js";
 import { shown } from "../../state/time_window.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -8,15 +8,15 @@ import { shown } from "../../state/time_window.js";
 export function createMarkers({ dispatch, now, speak }) {
   const panel = byId("marker-panel");
   const body = /** @type {Element} */ (panel.querySelector("tbody"));
-  /** Fills the table; it loads with the first marker. @type {typeof import("./marker_list.js").listMarkers | null} */
+  /** Fills the table; loaded with the first marker. @type {typeof import("./marker_list.js").listMarkers | null} */
   let list = null;
   byId("marker-set").addEventListener("click", () => {
     const { markers, cursors, hover } = now();
-    const free = markers.indexOf(null);
-    if (free < 0) return speak("All ten markers are set; remove one first.");
+    const digit = markers.indexOf(null);
+    if (digit < 0) return speak("All ten markers are set; remove one first.");
     const { start, end } = shown(now());
-    dispatch({ type: "marker", digit: free, cycle: cursors.a ?? hover ?? Math.round((start + end) / 2) });
-    speak(`Marker ${free} is set.`);
+    dispatch({ type: "marker", digit, cycle: cursors.a ?? hover ?? Math.round((start + end) / 2) });
+    speak(`Marker ${digit} is set.`);
   });
   byId("markers-remove").addEventListener("click", () => {
     for (const digit of now().markers.keys()) dispatch({ type: "marker", digit, cycle: null });
@@ -27,11 +27,11 @@ export function createMarkers({ dispatch, now, speak }) {
   async function paint(state) {
     const count = state.markers.filter((cycle) => cycle !== null).length;
     panel.hidden = count === 0;
-    say(/** @type {Element} */ (panel.querySelector("summary")), `Markers (${count})`);
+    setText(/** @type {Element} */ (panel.querySelector("summary")), `Markers (${count})`);
     if (list || count > 0) await fillTable();
   }
 
-  /** Once it is there it fills the table at once, in the same change. */
+  /** Without `await` once it is loaded, so that the table changes in the same task. */
   async function fillTable() {
     try {
       list ??= (await import("./marker_list.js")).listMarkers;

@@ -1,7 +1,7 @@
 /** The overview strip above the pulses, with the visible part to drag. */
 import { byId } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { listen } from "../../shell/commands.js";
+import { registerCommands } from "../../shell/commands.js";
 import { time } from "../../state/number.js";
 import { endOf, shown } from "../../state/time_window.js";
 import { color, fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
@@ -11,7 +11,7 @@ import { paintOverview } from "./paint.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
 
-/** An edge of the part is taken within this many CSS pixels. */
+/** Maximum distance of the pointer from an edge of the visible part, in CSS pixels. */
 const EDGE_PX = 6;
 
 /** @param {{engine: import("../../engine/engine.js").Engine} & import("../../state/types.js").Page} page */
@@ -22,7 +22,7 @@ export function createOverview({ engine, dispatch, now }) {
   const strip = document.createElement("canvas");
   /** @type {PulseColumns | null} */
   let whole = null;
-  /** What is dragged, and how far the pointer was from it in cycles. @type {{what: "start" | "end" | "part", by: number} | null} */
+  /** What is dragged, and its distance from the pointer in cycles. @type {{target: "start" | "end" | "part", offset: number} | null} */
   let drag = null;
 
   watch(canvas, () => refresh(now()));
@@ -30,17 +30,18 @@ export function createOverview({ engine, dispatch, now }) {
     if (event.button !== 0) return;
     canvas.setPointerCapture(event.pointerId);
     const { start, end } = shown(now());
-    const what = under(event);
+    const target = targetAt(event);
     const cycle = cycleOf(event);
-    if (what === "beside") move("part", cycle - (end - start) / 2);
+    if (target === "outside") move("part", cycle - (end - start) / 2);
     drag =
-      what === "beside"
-        ? { what: "part", by: (end - start) / 2 }
-        : { what, by: cycle - (what === "end" ? end : start) };
+      target === "outside"
+        ? { target: "part", offset: (end - start) / 2 }
+        : { target, offset: cycle - (target === "end" ? end : start) };
   });
   canvas.addEventListener("pointermove", (event) => {
-    if (drag && canvas.hasPointerCapture(event.pointerId)) move(drag.what, cycleOf(event) - drag.by);
-    else canvas.style.cursor = { start: "ew-resize", end: "ew-resize", part: "grab", beside: "pointer" }[under(event)];
+    if (drag && canvas.hasPointerCapture(event.pointerId)) move(drag.target, cycleOf(event) - drag.offset);
+    else
+      canvas.style.cursor = { start: "ew-resize", end: "ew-resize", part: "grab", outside: "pointer" }[targetAt(event)];
   });
   for (const kind of ["pointerup", "pointercancel"])
     canvas.addEventListener(kind, () => {
@@ -55,50 +56,50 @@ export function createOverview({ engine, dispatch, now }) {
     },
     { passive: false },
   );
-  /** @param {"start" | "end"} what @param {number} sign */
-  const nudge = (what, sign) => () => {
+  /** @param {"start" | "end"} target @param {number} sign */
+  const nudge = (target, sign) => () => {
     const part = shown(now());
-    move(what, part[what] + (sign * (part.end - part.start)) / 10);
+    move(target, part[target] + (sign * (part.end - part.start)) / 10);
   };
-  listen(canvas, "Overview (strip above the pulses)", [
+  registerCommands(canvas, "Overview (strip above the pulses)", [
     { keys: ["ArrowLeft"], text: "move the visible part earlier", run: () => pan(page, -0.1) },
     { keys: ["ArrowRight"], text: "move the visible part later", run: () => pan(page, 0.1) },
-    { keys: ["Shift+ArrowLeft"], text: "its end earlier", run: nudge("end", -1) },
-    { keys: ["Shift+ArrowRight"], text: "its end later", run: nudge("end", 1) },
-    { keys: ["Alt+ArrowLeft"], text: "its start earlier", run: nudge("start", -1) },
-    { keys: ["Alt+ArrowRight"], text: "its start later", run: nudge("start", 1) },
+    { keys: ["Shift+ArrowLeft"], text: "move its end earlier", run: nudge("end", -1) },
+    { keys: ["Shift+ArrowRight"], text: "move its end later", run: nudge("end", 1) },
+    { keys: ["Alt+ArrowLeft"], text: "move its start earlier", run: nudge("start", -1) },
+    { keys: ["Alt+ArrowRight"], text: "move its start later", run: nudge("start", 1) },
     { keys: ["+", "="], text: "zoom in", run: () => zoom(page, 0.5) },
     { keys: ["-", "−"], text: "zoom out", run: () => zoom(page, 2) },
     { keys: ["Home"], text: "show the whole run", run: () => dispatch({ type: "window", window: null }) },
   ]);
 
-  /** Cycle under the pointer, also beside the run. @param {MouseEvent} event */
+  /** Cycle at the pointer, which may be outside of the run. @param {MouseEvent} event */
   function cycleOf(event) {
     const box = canvas.getBoundingClientRect();
     return ((event.clientX - box.left - GUTTER) / Math.max(1, box.width - GUTTER - MARGIN)) * endOf(now());
   }
 
-  /** @param {MouseEvent} event @returns {"start" | "end" | "part" | "beside"} */
-  function under(event) {
+  /** @param {MouseEvent} event @returns {"start" | "end" | "part" | "outside"} */
+  function targetAt(event) {
     const { start, end } = shown(now());
     const reach = (EDGE_PX / Math.max(1, canvas.clientWidth - GUTTER - MARGIN)) * endOf(now());
     const cycle = cycleOf(event);
-    // A narrow part is taken by its edges from outside only, so that it can still be moved.
-    const inside = Math.min(reach, (end - start) / 4);
-    if (cycle >= start - reach && cycle < start + inside) return "start";
-    if (cycle > end - inside && cycle <= end + reach) return "end";
-    return cycle >= start && cycle <= end ? "part" : "beside";
+    // The edges of a narrow part reach less far inside, so that the part can still be dragged.
+    const insideReach = Math.min(reach, (end - start) / 4);
+    if (cycle >= start - reach && cycle < start + insideReach) return "start";
+    if (cycle > end - insideReach && cycle <= end + reach) return "end";
+    return cycle >= start && cycle <= end ? "part" : "outside";
   }
 
-  /** @param {"start" | "end" | "part"} what @param {number} to  Cycle. */
-  function move(what, to) {
+  /** @param {"start" | "end" | "part"} target @param {number} to  Cycle. */
+  function move(target, to) {
     const { start, end } = shown(now());
     const last = endOf(now());
     const inside = Math.min(last, Math.max(0, to));
     const window =
-      what === "part"
+      target === "part"
         ? { start: to, end: to + end - start }
-        : what === "start"
+        : target === "start"
           ? { start: Math.min(inside, end - 1), end }
           : { start, end: Math.max(inside, start + 1) };
     dispatch({ type: "window", joins: "overview", window });
@@ -115,7 +116,7 @@ export function createOverview({ engine, dispatch, now }) {
     const reply = await engine.latest("overview", "pulses", 0, endOf(state), wanted, 0).catch(unlessDropped);
     const height = Math.round(canvas.clientHeight * ratio());
     if (!reply) return;
-    // Where it was hidden meanwhile it is made when it is shown again.
+    // If it was hidden meanwhile, it is requested again when it is visible.
     whole = height > 0 ? reply : null;
     if (!whole) return;
     const context = strip.getContext("2d");
@@ -144,15 +145,15 @@ export function createOverview({ engine, dispatch, now }) {
     context.textBaseline = "middle";
     context.fillText("whole run", left - 8 * scale, (height / 2) * scale);
     const x = (/** @type {number} */ cycle) => left + (cycle / endOf(state)) * (right - left);
-    const [a, b] = [x(start), Math.max(x(end), x(start) + 3 * scale)];
+    const [visibleLeft, visibleRight] = [x(start), Math.max(x(end), x(start) + 3 * scale)];
     context.fillStyle = color("--ground");
     context.globalAlpha = 0.6;
-    context.fillRect(left, 0, a - left, height * scale);
-    context.fillRect(b, 0, right - b, height * scale);
+    context.fillRect(left, 0, visibleLeft - left, height * scale);
+    context.fillRect(visibleRight, 0, right - visibleRight, height * scale);
     context.globalAlpha = 1;
     context.strokeStyle = color("--accent");
     context.lineWidth = 2 * scale;
-    context.strokeRect(a, scale, b - a, height * scale - 2 * scale);
+    context.strokeRect(visibleLeft, scale, visibleRight - visibleLeft, height * scale - 2 * scale);
   }
 
   /** @param {State} state @param {State | undefined} before */

@@ -4,8 +4,8 @@ import { color } from "../../time/plot.js";
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
 /** @typedef {{columns: PulseColumns, from: number, to: number, at: (column: number) => number}} Picture  Columns `from` to `to` are visible; `at` is a column's left edge in device pixels. */
 
-/** Consecutive busy columns from which on they count as a block. */
-const BLOCK = 4;
+/** From this number of consecutive columns with both levels on, they are drawn as a block. */
+const MIN_BLOCK = 4;
 /** Bits of the line's signals (contract A3). */
 const [RX, TX] = [33, 34];
 
@@ -14,11 +14,11 @@ export function has(words, column, bit) {
   return ((words[2 * column + (bit >> 5)] >>> (bit & 31)) & 1) === 1;
 }
 
-/** Runs of columns for which something holds. @param {Picture} picture @param {(column: number) => boolean} holds @param {(x: number, width: number) => void} draw */
-function runs({ from, to, at }, holds, draw) {
+/** Draws each run of consecutive columns with a property. @param {Picture} picture @param {(column: number) => boolean} hasProperty @param {(x: number, width: number) => void} draw */
+function runs({ from, to, at }, hasProperty, draw) {
   let begin = -1;
   for (let i = from; i <= to; i++) {
-    const now = i < to && holds(i);
+    const now = i < to && hasProperty(i);
     if (now && begin < 0) begin = i;
     if (now || begin < 0) continue;
     draw(at(begin), at(i) - at(begin));
@@ -44,7 +44,7 @@ export function paintSignal(context, { columns, from, to, at }, bit, { top, heig
     const [x, width] = [at(begin), at(end) - at(begin)];
     if (kind === 0) context.fillRect(x, top + height - thick, width, thick);
     else if (kind === 1) context.fillRect(x, top, width, thick);
-    else if (kind === 2 && end - begin < BLOCK) context.fillRect(x, top, Math.max(width, thick), height);
+    else if (kind === 2 && end - begin < MIN_BLOCK) context.fillRect(x, top, Math.max(width, thick), height);
     else if (kind === 2) blocks.push([x, width]);
     begin = end;
   };
@@ -54,7 +54,7 @@ export function paintSignal(context, { columns, from, to, at }, bit, { top, heig
     const next = high && low ? 2 : high ? 1 : low ? 0 : -1;
     if (next === kind) continue;
     close(i);
-    // Two neighbours that stand at different levels have an edge between them.
+    // Between columns of different levels there is an edge.
     if ((kind === 0 && next === 1) || (kind === 1 && next === 0)) context.fillRect(at(i), top, thick, height);
     kind = next;
   }
@@ -65,8 +65,8 @@ export function paintSignal(context, { columns, from, to, at }, bit, { top, heig
 }
 
 /**
- * A ground behind the columns in which a signal is at a level: the direction under the steps of a folded channel, the
- * line's bytes where they are too dense to be told apart.
+ * A background for the columns in which a signal has a level: the direction of a folded channel, or bytes that are too dense to
+ * draw.
  * @param {CanvasRenderingContext2D} context  In device pixels.
  * @param {Picture} picture
  * @param {number} bit
@@ -85,13 +85,14 @@ export function paintTint(context, picture, bit, high, { top, height, ink }) {
   context.globalAlpha = 1;
 }
 
-/** Widths of texts that were measured, in device pixels. @type {Map<string, number>} */
+/** Measured widths of texts, in device pixels. @type {Map<string, number>} */
 const widths = new Map();
+const MAX_WIDTHS = 5000;
 let widthsFont = "";
 
 /** @param {CanvasRenderingContext2D} context @param {string} text */
 function widthOf(context, text) {
-  if (widthsFont !== context.font || widths.size > 5000) {
+  if (widthsFont !== context.font || widths.size > MAX_WIDTHS) {
     widths.clear();
     widthsFont = context.font;
   }
@@ -101,9 +102,9 @@ function widthOf(context, text) {
 }
 
 /**
- * Spans with a text in them, as a decoder shows them: the longest text that fits.
+ * Draws spans, each with the longest text that fits.
  * @param {CanvasRenderingContext2D} context  In device pixels.
- * @param {{from: number, to: number, texts: string[], marked: boolean, ink: string | null, sample?: number | null}[]} spans  Device pixels; an ink of their own where they are not as usual.
+ * @param {{from: number, to: number, texts: string[], marked: boolean, ink: string | null, sample?: number | null}[]} spans  In device pixels; `ink` is a special color.
  * @param {{top: number, height: number, ratio: number, ink: string, left: number, right: number, font: string}} place
  */
 export function paintSpans(context, spans, { top, height, ratio, ink, left, right, font }) {
@@ -131,16 +132,16 @@ export function paintSpans(context, spans, { top, height, ratio, ink, left, righ
   }
 }
 
-/** One thin strip: how busy each column of the whole run is. @param {CanvasRenderingContext2D} context @param {PulseColumns} columns @param {{left: number, height: number}} place */
+/** The overview: strips that show in which columns STEP, DIR and the line change. @param {CanvasRenderingContext2D} context @param {PulseColumns} columns @param {{left: number, height: number}} place */
 export function paintOverview(context, columns, { left, height }) {
   const picture = { columns, from: 0, to: columns.high.length / 2, at: (/** @type {number} */ i) => left + i };
   const strip = (
     /** @type {number} */ index,
     /** @type {string} */ ink,
-    /** @type {(column: number) => boolean} */ holds,
+    /** @type {(column: number) => boolean} */ hasProperty,
   ) => {
     context.fillStyle = color(ink);
-    runs(picture, holds, (x, width) => context.fillRect(x, (0.08 + index * 0.3) * height, width, 0.24 * height));
+    runs(picture, hasProperty, (x, width) => context.fillRect(x, (0.08 + index * 0.3) * height, width, 0.24 * height));
   };
   const busy = (/** @type {number} */ mask) => (/** @type {number} */ i) =>
     (columns.high[2 * i] & columns.low[2 * i] & mask) !== 0;

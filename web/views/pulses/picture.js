@@ -11,12 +11,12 @@ import { rowsOf, shows } from "./rows.js";
 /** @typedef {import("../../state/types.js").PulseColumns} PulseColumns */
 /** @typedef {{left: number, right: number}} Plot  Plotting area in CSS pixels. */
 /** @typedef {ReturnType<typeof import("./spans.js").createSpans>} Spans */
-/** @typedef {{columns: PulseColumns, start: number, end: number, count: number, margin: number}} Answer  Columns of a stretch of cycles and of a margin at each side. */
+/** @typedef {{columns: PulseColumns, start: number, end: number, count: number, margin: number}} PulseReply  Columns of a range of cycles, with a margin at each side. */
 
 /**
- * Where the columns lie by now: one on each device pixel where they are those of the shown time, shifted where it was
- * moved since, stretched where it was zoomed.
- * @param {State} state @param {Answer} last @param {number} left @param {number} right  Device pixels. @returns {import("./paint.js").Picture}
+ * The current positions of the columns: one per device pixel; shifted or stretched if the visible time has changed since the
+ * request.
+ * @param {State} state @param {PulseReply} last @param {number} left @param {number} right  Device pixels. @returns {import("./paint.js").Picture}
  */
 function placedColumns(state, { columns, start, end, count, margin }, left, right) {
   const window = shown(state);
@@ -29,7 +29,7 @@ function placedColumns(state, { columns, start, end, count, margin }, left, righ
   return { columns, from: Math.floor(column(left)), to: Math.ceil(column(right)), at: (i) => first + i * width };
 }
 
-/** @param {HTMLCanvasElement} canvas @param {State} state @param {Plot} plot @param {Answer} answer @param {Spans} spans */
+/** @param {HTMLCanvasElement} canvas @param {State} state @param {Plot} plot @param {PulseReply} answer @param {Spans} spans */
 export function paintRows(canvas, state, plot, answer, spans) {
   const { width, ratio: scale } = fit(canvas);
   const context = canvas.getContext("2d");
@@ -51,10 +51,10 @@ export function paintRows(canvas, state, plot, answer, spans) {
     context.textAlign = "right";
     context.textBaseline = "middle";
     context.font = `${selected ? "bold " : ""}${font}`;
-    const folds = "open" in row && row.open !== undefined;
+    const isFoldable = "open" in row && row.open !== undefined;
     const name = ("short" in row && row.short) || row.name;
-    context.fillText(fitting(context, name, left - (folds ? 28 : 12) * scale), left - 8 * scale, top + height / 2);
-    if (folds) {
+    context.fillText(fitting(context, name, left - (isFoldable ? 28 : 12) * scale), left - 8 * scale, top + height / 2);
+    if (isFoldable) {
       context.textAlign = "left";
       context.fillText(row.open ? "▾" : "▸", 8 * scale, top + height / 2);
     }
@@ -76,12 +76,12 @@ export function paintRows(canvas, state, plot, answer, spans) {
   }
 }
 
-/** A name, or as much of its beginning as there is room for. @param {CanvasRenderingContext2D} context @param {string} name @param {number} room  Device pixels. */
-function fitting(context, name, room) {
-  if (context.measureText(name).width <= room) return name;
+/** A name, shortened to fit. @param {CanvasRenderingContext2D} context @param {string} name @param {number} width  Device pixels. */
+function fitting(context, name, width) {
+  if (context.measureText(name).width <= width) return name;
   for (let length = name.length - 1; length > 1; length--) {
     const text = `${name.slice(0, length).trimEnd()}…`;
-    if (context.measureText(text).width <= room) return text;
+    if (context.measureText(text).width <= width) return text;
   }
   return name.slice(0, 1);
 }
@@ -92,7 +92,7 @@ function placed(state, plot, { start, end, sample, ...rest }) {
   return { ...rest, from: x(start), to: x(end), sample: typeof sample === "number" ? x(sample + 0.5) : null };
 }
 
-/** A frame around the spans that are highlighted, whoever points at them, and around a highlighted edge. @param {CanvasRenderingContext2D} context  In CSS pixels. @param {State} state @param {Plot} plot @param {Spans} spans */
+/** Draws frames around the highlighted spans and the highlighted edge. @param {CanvasRenderingContext2D} context  In CSS pixels. @param {State} state @param {Plot} plot @param {Spans} spans */
 export function drawHighlights(context, state, plot, spans) {
   const { highlighted } = state;
   if (!highlighted) return;
@@ -107,8 +107,8 @@ export function drawHighlights(context, state, plot, spans) {
       context.strokeRect(pixelOf(state, plot, highlighted.start) - 3, top + 3, 6, px - 4);
     } else if (!spans.isDense(row)) {
       for (const { start, end, packet } of spans.spansOf(state, row)) {
-        const same = start === highlighted.start && end === highlighted.end;
-        if (!same && (packet === null || packet !== highlighted.packet || "wire" in row)) continue;
+        const isHighlighted = start === highlighted.start && end === highlighted.end;
+        if (!isHighlighted && (packet === null || packet !== highlighted.packet || "wire" in row)) continue;
         const [from, to] = [
           Math.max(plot.left, pixelOf(state, plot, start)),
           Math.min(plot.right, pixelOf(state, plot, end)),

@@ -6,7 +6,7 @@ import { rowsOf, shows } from "./rows.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
-/** The sign that folds a channel is within this many CSS pixels of the left edge. */
+/** Width of the area at the left edge that folds a channel, in CSS pixels. */
 const FOLD_PX = 26;
 
 /**
@@ -16,7 +16,7 @@ const FOLD_PX = 26;
  *   fold: (channel: number) => void} & import("../../state/types.js").Page} page
  */
 export function createPointer(canvas, { engine, plot, rowPx, reading, spans, fold, dispatch, now }) {
-  // First, because its listener notes the cycle under the pointer, which those below read.
+  // First, because its listener updates the cycle under the pointer, which the listeners below read.
   onTimeAxis(canvas, plot, { dispatch, now, click: pick });
   canvas.addEventListener("pointermove", (event) => {
     if (event.buttons === 0) point(event);
@@ -26,10 +26,10 @@ export function createPointer(canvas, { engine, plot, rowPx, reading, spans, fol
     reading.span("");
   });
 
-  /** @param {{start: number, end: number, packet?: number | null, bit?: number} | null} what */
-  function highlight(what) {
-    const { start, end, packet = null, bit = null } = what ?? { start: 0, end: 0 };
-    dispatch({ type: "highlight", highlighted: what && { start, end, from: "pulses", packet, bit } });
+  /** @param {{start: number, end: number, packet?: number | null, bit?: number} | null} target */
+  function highlight(target) {
+    const { start, end, packet = null, bit = null } = target ?? { start: 0, end: 0 };
+    dispatch({ type: "highlight", highlighted: target && { start, end, from: "pulses", packet, bit } });
   }
 
   /** @param {MouseEvent} event */
@@ -74,7 +74,7 @@ export function createPointer(canvas, { engine, plot, rowPx, reading, spans, fol
     return nearestEdge(edges, cycle, reach) ?? cycle;
   }
 
-  /** A click on a row chooses it and sets a cursor, on an edge if one is near; on a packet, chooses it. @param {PointerEvent} event @param {number} at */
+  /** Handles a click. On a signal it selects the row and sets a cursor, snapped to an edge. On a packet it selects the packet. @param {PointerEvent} event @param {number} at */
   function pick(event, at) {
     const row = rowAt(event);
     if (!row) return false;

@@ -1,12 +1,12 @@
 /** The pulses view: a logic analyzer of all signals, with decoded line and ticks. */
-import { byId, options, say } from "../../dom.js";
+import { byId, setOptions, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { listen } from "../../shell/commands.js";
+import { registerCommands } from "../../shell/commands.js";
 import { time } from "../../state/number.js";
 import { selected } from "../../state/queries.js";
 import { rowPx } from "../../state/row_choices.js";
 import { shown } from "../../state/time_window.js";
-import { drawCursors, overlaid } from "../../time/cursors.js";
+import { drawCursors, hasOverlayChanged } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { fit, GUTTER, MARGIN, ratio, watch } from "../../time/plot.js";
 import { createRange } from "../../time/range.js";
@@ -18,7 +18,7 @@ import { drawHighlights, paintRows } from "./picture.js";
 import { createPointer } from "./pointer.js";
 import { createReading } from "./reading.js";
 import { createRowPanel } from "./row_panel.js";
-import { allFolded, channelOf, idle, isFolded, nameOf, rowsOf, shows, signalsOf } from "./rows.js";
+import { allFolded, channelOf, idleSignals, isFolded, nameOf, rowsOf, shows, signalsOf } from "./rows.js";
 import { createSpans } from "./spans.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -38,15 +38,15 @@ export function createPulses({ engine, dispatch, now }) {
   const reading = createReading({ engine, now });
   const spans = createSpans({ engine });
   const markers = createMarkers({ ...page, speak: reading.speak });
-  /** The table of edges; it loads when it is first unfolded. @type {ReturnType<typeof import("./edges.js").createEdges> | null} */
+  /** The table of edges, loaded when it is first unfolded. @type {ReturnType<typeof import("./edges.js").createEdges> | null} */
   let edges = null;
-  const panel = createRowPanel({ ...page, canvas, speak: reading.speak });
+  const rowPanel = createRowPanel({ ...page, canvas, speak: reading.speak });
   const handles = createHandles(byId("pulses-handles"), () => plot, {
     ...page,
-    settle: (cycle) => pointer.snapped(now().row, cycle),
+    snap: (cycle) => pointer.snapped(now().row, cycle),
   });
   const px = () => rowPx(now().panes.pulses);
-  /** @type {import("./picture.js").Answer | null} */
+  /** @type {import("./picture.js").PulseReply | null} */
   let reply = null;
   let frame = 0;
   let plot = { left: GUTTER, right: GUTTER + 1 };
@@ -54,16 +54,16 @@ export function createPulses({ engine, dispatch, now }) {
   const table = /** @type {HTMLDetailsElement} */ (byId("edge-panel"));
   table.addEventListener("toggle", async () => {
     if (!table.open) return;
-    // Nothing in it takes a press before there is anyone to hear it.
+    // Its buttons have no effect before it is loaded.
     const content = /** @type {HTMLElement} */ (table.lastElementChild);
     content.inert = edges === null;
     try {
       const { createEdges } = await import("./edges.js");
       edges ??= createEdges({ engine, now });
       content.inert = false;
-      edges.fromShown();
+      edges.showFromWindow();
     } catch {
-      say(byId("edges-count"), "The table could not be loaded. Check the network and unfold it again.");
+      setText(byId("edges-count"), "The table could not be loaded. Check the network and unfold it again.");
     }
   });
 
@@ -74,7 +74,7 @@ export function createPulses({ engine, dispatch, now }) {
   rowSelect.addEventListener("change", () => dispatch({ type: "row", row: Number(rowSelect.value) }));
   foldAll.addEventListener("click", () => dispatch({ type: "fold-all", folded: !allFolded(now()) }));
   allSignals.addEventListener("change", () => dispatch({ type: "all-signals", on: allSignals.checked }));
-  listen(canvas, "Pulses", [
+  registerCommands(canvas, "Pulses", [
     { keys: ["n"], text: "next edge of the selected row", run: () => void jump(true) },
     { keys: ["p"], text: "previous edge of the selected row", run: () => void jump(false) },
     { keys: ["ArrowUp"], text: "select the row above", run: () => step(-1) },
@@ -111,30 +111,30 @@ export function createPulses({ engine, dispatch, now }) {
     reading.speak(jumpText(nameOf(state, state.row), kind, forward, edge, state.result.summary.clock_hz));
   }
 
-  /** Requests what the shown time needs; until it is there the last picture is drawn where it belongs by now. @param {State} state */
+  /** Requests the columns and spans of the visible time. Until they arrive, the last picture is drawn shifted and stretched. @param {State} state */
   async function refresh(state) {
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
     const { start, end } = shown(state);
     const wanted = Math.max(16, Math.round((plot.right - plot.left) * ratio()));
     const margin = Math.round(wanted / 4);
-    if (reply) soon();
+    if (reply) paintSoon();
     const request = engine
       .latest("pulses", "pulses", start, end, wanted, margin)
       .catch(unlessDropped)
       .then((columns) => {
         if (!columns) return false;
         reply = { columns, start, end, count: wanted, margin };
-        soon();
+        paintSoon();
         return true;
       });
-    const all = await Promise.all([request, spans.fetch(state, plot.right - plot.left, soon)]);
-    // Whoever waits for the drawing waits for this.
+    const all = await Promise.all([request, spans.fetch(state, plot.right - plot.left, paintSoon)]);
+    // Painted before the promise resolves, so that callers can wait for the drawing.
     if (all.every(Boolean)) paint(now());
   }
 
-  /** Paints in the next frame, however much has changed until then. */
-  function soon() {
+  /** Paints once in the next frame. */
+  function paintSoon() {
     frame ||= requestAnimationFrame(() => paint(now()));
   }
 
@@ -170,33 +170,33 @@ export function createPulses({ engine, dispatch, now }) {
     );
   }
 
-  /** The head's choices and the height that the rows take. @param {State} state */
+  /** Updates the controls of the header and the height of the rows. @param {State} state */
   function layout(state) {
     const channels = selected(state)?.channels ?? 1;
-    options(
+    setOptions(
       rowSelect,
       signalsOf(state).map(({ name, bit }) => [String(bit), name]),
       String(state.row),
     );
     const folded = allFolded(state);
     foldAll.hidden = channels === 1;
-    say(foldAll, folded ? "Unfold channels" : "Fold channels");
+    setText(foldAll, folded ? "Unfold channels" : "Fold channels");
     allSignals.checked = state.allSignals;
-    /** @type {HTMLElement} */ (allSignals.parentElement).hidden = idle(state).length === 0;
-    const tall = rowsOf(state).length * px() + 6;
-    stack.style.height = `${tall}px`;
-    // On a wide screen this view takes what its rows need, and the curves the rest.
-    byId("views").style.setProperty("--rows-px", `${tall}px`);
+    /** @type {HTMLElement} */ (allSignals.parentElement).hidden = idleSignals(state).length === 0;
+    const height = rowsOf(state).length * px() + 6;
+    stack.style.height = `${height}px`;
+    // On a wide screen this view is as high as its rows, and the curves get the remaining height.
+    byId("views").style.setProperty("--rows-px", `${height}px`);
   }
 
   /** Scrolls the selected row into view. @param {State} state */
   function follow(state) {
     const scroller = /** @type {HTMLElement} */ (stack.parentElement);
-    const tall = px();
-    const top = rowsOf(state).findIndex((row) => shows(row, state.row)) * tall;
+    const rowHeight = px();
+    const top = rowsOf(state).findIndex((row) => shows(row, state.row)) * rowHeight;
     if (top < scroller.scrollTop) scroller.scrollTop = top;
-    else if (top + tall + 6 > scroller.scrollTop + scroller.clientHeight)
-      scroller.scrollTop = top + tall + 6 - scroller.clientHeight;
+    else if (top + rowHeight + 6 > scroller.scrollTop + scroller.clientHeight)
+      scroller.scrollTop = top + rowHeight + 6 - scroller.clientHeight;
   }
 
   /** @param {State} state @param {State | undefined} before */
@@ -205,20 +205,20 @@ export function createPulses({ engine, dispatch, now }) {
     markers.render(state, before);
     edges?.render(state, before);
     const strip = overview.render(state, before);
-    const arranged =
+    const isLayoutChanged =
       before?.result !== state.result ||
       before?.row !== state.row ||
       before?.folds !== state.folds ||
       before?.allSignals !== state.allSignals ||
       before?.panes.pulses !== state.panes.pulses;
-    if (arranged) layout(state);
-    panel.render(state, before);
+    if (isLayoutChanged) layout(state);
+    rowPanel.render(state, before);
     if (before && before.row !== state.row) follow(state);
-    const walked = before && (before.cursors.a !== state.cursors.a || before.row !== state.row);
-    if (walked && document.activeElement === canvas && before.result === state.result) reading.speakCursor();
+    const isSelectionMoved = before && (before.cursors.a !== state.cursors.a || before.row !== state.row);
+    if (isSelectionMoved && document.activeElement === canvas && before.result === state.result) reading.speakCursor();
     if (before?.window !== state.window || before?.result !== state.result) return Promise.all([refresh(state), strip]);
-    if (arranged || before?.packet !== state.packet) paint(state);
-    else if (overlaid(before, state)) paintCursor(state);
+    if (isLayoutChanged || before?.packet !== state.packet) paint(state);
+    else if (hasOverlayChanged(before, state)) paintCursor(state);
     return undefined;
   }
   return { render, speak: reading.speak };

@@ -1,5 +1,5 @@
 /** The readings below the pulses: pointer, pulse or span, and cursors. */
-import { byId, say } from "../../dom.js";
+import { byId, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, exactTime, short, si, time } from "../../state/number.js";
 import { nameOf } from "./rows.js";
@@ -7,19 +7,19 @@ import { nameOf } from "./rows.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Pulse} Pulse */
 
-/** Rest before a sentence is spoken, in ms: keys that are held down say what they come to. */
+/** Delay before a sentence is spoken, in ms, so that a held key speaks only once. */
 const SPEAK_MS = 250;
 const coarse = () => matchMedia("(pointer: coarse)").matches;
 
 /** @param {{engine: import("../../engine/engine.js").Engine, now: () => State}} page */
 export function createReading({ engine, now }) {
-  /** What is under the pointer, as text. */
+  /** The text about the signal or span under the pointer. */
   let pointed = "";
-  /** What was announced last, shown until the pointer moves. */
+  /** The last announced sentence, shown until the pointer moves. */
   let announced = "";
   let timer = 0;
-  /** Counts the sentences: what comes to be known after a newer one is not announced. */
-  let sentences = 0;
+  /** Number of announced sentenceCount; a reply that arrives after a newer sentence is dropped. */
+  let sentenceCount = 0;
 
   /** @param {State} state */
   function cursors(state) {
@@ -36,7 +36,7 @@ export function createReading({ engine, now }) {
       texts.push(
         a === null ? (coarse() ? "a tap sets A" : "click sets cursor A") : coarse() ? "drag B" : "shift-click sets B",
       );
-    say(byId("cursor-readings"), texts.join(" · "));
+    setText(byId("cursor-readings"), texts.join(" · "));
   }
 
   /** Width, period, frequency and duty cycle of the pulse under the pointer. @param {number} bit @returns {Promise<Pulse | undefined>} */
@@ -44,11 +44,11 @@ export function createReading({ engine, now }) {
     const { hover } = now();
     if (hover === null) return span("");
     const reply = await engine.latest("pulse", "pulse_at", bit, hover).catch(unlessDropped);
-    if (reply) span(measured(now(), bit, reply));
+    if (reply) span(pulseText(now(), bit, reply));
     return reply ?? undefined;
   }
 
-  /** A span, or nothing, is under the pointer. @param {string} text @returns {undefined} */
+  /** Shows the text of the span under the pointer; empty if there is none. @param {string} text @returns {undefined} */
   function span(text) {
     pointed = text;
     announced = "";
@@ -58,9 +58,10 @@ export function createReading({ engine, now }) {
   /** @param {State} state */
   function foot(state) {
     const clock = state.result?.summary.clock_hz ?? 1;
-    const under = state.hover === null ? [] : [`${time(state.hover / clock)} · cycle ${count(state.hover)}`, pointed];
-    const text = announced || under.filter(Boolean).join(" · ");
-    say(
+    const atPointer =
+      state.hover === null ? [] : [`${time(state.hover / clock)} · cycle ${count(state.hover)}`, pointed];
+    const text = announced || atPointer.filter(Boolean).join(" · ");
+    setText(
       byId("hover-reading"),
       text ||
         (coarse()
@@ -70,31 +71,31 @@ export function createReading({ engine, now }) {
     byId("hover-reading").classList.toggle("said", announced !== "");
   }
 
-  /** Shows a sentence at once and lets it be spoken. @param {string} text */
+  /** Shows a sentence at once, and speaks it after a delay. @param {string} text */
   function speak(text) {
     announced = text;
-    sentences++;
+    sentenceCount++;
     foot(now());
     clearTimeout(timer);
-    timer = window.setTimeout(() => say(byId("pulses-sentence"), text), SPEAK_MS);
+    timer = window.setTimeout(() => setText(byId("pulses-sentence"), text), SPEAK_MS);
   }
 
-  /** Speaks what the selected row does at cursor A. */
+  /** Speaks the level of the selected row at cursor A. */
   async function speakCursor() {
     const {
       row,
       cursors: { a },
     } = now();
     if (a === null) return;
-    const own = sentences;
+    const own = sentenceCount;
     const reply = await engine.latest("spoken", "pulse_at", row, a).catch(unlessDropped);
-    if (own !== sentences) return;
+    if (own !== sentenceCount) return;
     const state = now();
     const clock = state.result?.summary.clock_hz ?? 1;
-    if (reply) speak(`${time(a / clock)}, cycle ${a}: ${measured(state, row, reply)}.`);
+    if (reply) speak(`${time(a / clock)}, cycle ${a}: ${pulseText(state, row, reply)}.`);
   }
 
-  /** What `announced` is about. @type {State["result"]} */
+  /** The result of `announced`. @type {State["result"]} */
   let about = null;
 
   /** @param {State} state */
@@ -107,8 +108,8 @@ export function createReading({ engine, now }) {
   return { signal, span, speak, speakCursor, render };
 }
 
-/** A level and what is around it as text. @param {State} state @param {number} bit @param {Pulse} pulse */
-function measured(state, bit, { high, begin, end, next }) {
+/** A pulse as text: its level, width, period and duty cycle. @param {State} state @param {number} bit @param {Pulse} pulse */
+function pulseText(state, bit, { high, begin, end, next }) {
   const clock = state.result?.summary.clock_hz ?? 1;
   const level = `${nameOf(state, bit)} ${high ? "high" : "low"}`;
   if (begin === null) return end === null ? `${level}, no edges` : `${level}, first edge at ${time(end / clock)}`;

@@ -1,5 +1,5 @@
 /** The panel of rows; loads row_list.js on demand. */
-import { listen } from "../../shell/commands.js";
+import { registerCommands } from "../../shell/commands.js";
 import { createLazyPopover } from "../../shell/lazy_popover.js";
 
 /** @typedef {ReturnType<typeof import("./row_list.js").createRowList>} RowList */
@@ -15,15 +15,15 @@ export function createRowPanel({ canvas, ...page }) {
     });
     return loading;
   };
-  const missing = () => page.speak("This part of the page could not be loaded. Check the network and try again.");
-  const key = (/** @type {(list: RowList) => void} */ work) => () => void load().then(work, missing);
-  listen(canvas, "Pulses", [
+  const showError = () => page.speak("This part of the page could not be loaded. Check the network and try again.");
+  const key = (/** @type {(list: RowList) => void} */ work) => () => void load().then(work, showError);
+  registerCommands(canvas, "Pulses", [
     { keys: ["Shift+ArrowUp"], text: "move the selected row up", run: key(({ move }) => move(-1)) },
-    { keys: ["Shift+ArrowDown"], text: "move it down", run: key(({ move }) => move(1)) },
-    { keys: ["h"], text: "hide it", run: key(({ hide }) => hide()) },
+    { keys: ["Shift+ArrowDown"], text: "move the selected row down", run: key(({ move }) => move(1)) },
+    { keys: ["h"], text: "hide the selected row", run: key(({ hide }) => hide()) },
     { keys: ["Alt+ArrowDown"], text: "taller rows", run: key(({ stretch }) => stretch(1)) },
     { keys: ["Alt+ArrowUp"], text: "lower rows", run: key(({ stretch }) => stretch(-1)) },
-    { keys: ["r"], text: "list of the rows: heights, order, names", run: key(({ open }) => open()) },
+    { keys: ["r"], text: "open the list of rows: height, order, names", run: key(({ open }) => open()) },
   ]);
   return createLazyPopover("rows-open", "rows-panel", load, "rows-about");
 }

@@ -5,20 +5,20 @@ import { inOrder } from "../../state/row_choices.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /**
- * @typedef {{kind: "signal", name: string, bit: number, ink: string, short?: string, channel?: number, open?: boolean}} SignalRow  With the sign that folds its `channel` where it has `open`; `short` is shown where there is no room for the name.
- * @typedef {{kind: "folded", name: string, bit: number, dir: number, ink: string, channel: number, open: false}} FoldedRow  STEP over its DIR.
+ * @typedef {{kind: "signal", name: string, bit: number, ink: string, short?: string, channel?: number, open?: boolean}} SignalRow  With `open` it has a button to fold its `channel`. `short` is a name for the gutter.
+ * @typedef {{kind: "folded", name: string, bit: number, dir: number, ink: string, channel: number, open: false}} FoldedRow  STEP with its DIR as background.
  * @typedef {{kind: "packets" | "replies" | "ticks" | "violations", name: string, ink: string}} SpanRow
- * @typedef {{kind: "bits" | "bytes" | "fields", wire: "rx" | "tx", line: number, name: string, ink: string}} LineRow  A decoder of the signal `line`.
+ * @typedef {{kind: "bits" | "bytes" | "fields", wire: "rx" | "tx", line: number, name: string, ink: string}} LineRow  A decoder of the signal with bit `line`.
  * @typedef {SignalRow | FoldedRow | SpanRow | LineRow} Row
- * @typedef {{group: string, own: string, rows: Row[]}} Group  Its rows, named as the user does; `own` is what it is called without that.
+ * @typedef {{group: string, own: string, rows: Row[]}} Group  A group of rows with the user's names; `own` is its default name.
  */
 
 /** Signal bits (contract A3). */
 const [DIR, EN, RX, TX, DE] = [16, 32, 33, 34, 35];
-/** With more channels than these, all begin folded. The decoders do so too: the curves need the room. */
+/** With more channels than this, all are folded at first. */
 const MAX_UNFOLDED = 4;
 
-/** Signals of the line, that a run may leave as they are. */
+/** Signals of the line, which may never change in a run. */
 const LINE = [
   { name: "RX", bit: RX },
   { name: "TX", bit: TX },
@@ -30,7 +30,7 @@ function channelsOf(state) {
   return selected(state)?.channels ?? 1;
 }
 
-/** Whether a channel is one row, or the decoders of RX or TX are put away. @param {State} state @param {number} channel */
+/** Whether a channel is folded to one row, or the decoders of RX or TX are hidden. @param {State} state @param {number} channel */
 export function isFolded(state, channel) {
   return state.folds[channel] ?? (channel === RX || channel === TX || channelsOf(state) > MAX_UNFOLDED);
 }
@@ -42,13 +42,13 @@ export function allFolded(state) {
   );
 }
 
-/** What folds with a signal: its channel, or itself for RX and TX; nothing for EN and DE. @param {number} bit */
+/** The channel of a signal that can be folded; for RX and TX their bit; null for EN and DE. @param {number} bit */
 export function channelOf(bit) {
   return bit < EN ? bit % DIR : bit === RX || bit === TX ? bit : null;
 }
 
-/** Signals that never change in this run and are not asked for. @param {State} state */
-export function idle(state) {
+/** Signals of the line that never change in this run. @param {State} state */
+export function idleSignals(state) {
   const changing = selected(state)?.changing ?? [];
   return LINE.filter(({ bit }) => !changing.includes(bit));
 }
@@ -58,16 +58,16 @@ export function hasLine(state) {
   return selected(state)?.changing.includes(RX) ?? false;
 }
 
-/** What the user calls a group, or what it is called without that. @param {State} state @param {string} group @param {string} own */
-export function calledBy(state, group, own) {
+/** The user's name of a group, or its default name. @param {State} state @param {string} group @param {string} own */
+export function groupName(state, group, own) {
   return state.panes.pulses.names[group] ?? own;
 }
 
 /** A signal of the line with its decoders. @param {State} state @param {{name: string, bit: number}} signal @returns {Row[]} */
 function lineRows(state, { name: own, bit }) {
-  const name = calledBy(state, own, own);
-  const quiet = !selected(state)?.changing.includes(bit);
-  if (bit === DE || quiet) return [{ kind: "signal", name, bit, ink: "--wire" }];
+  const name = groupName(state, own, own);
+  const isIdle = !selected(state)?.changing.includes(bit);
+  if (bit === DE || isIdle) return [{ kind: "signal", name, bit, ink: "--wire" }];
   const open = !isFolded(state, bit);
   /** @type {Row} */
   const row = { kind: "signal", name, bit, ink: "--wire", channel: bit, open };
@@ -83,17 +83,17 @@ function lineRows(state, { name: own, bit }) {
   ];
 }
 
-/** All groups that the run has something of, in the user's order, also those that are hidden. @param {State} state @returns {Group[]} */
+/** All groups of the run in the user's order, including hidden ones. @param {State} state @returns {Group[]} */
 export function groupsOf(state) {
-  const away = state.allSignals ? [] : idle(state).filter(({ bit }) => bit !== state.row);
+  const hiddenSignals = state.allSignals ? [] : idleSignals(state).filter(({ bit }) => bit !== state.row);
   const framed = state.result?.summary.framed ?? false;
   /** @type {Group[]} */
   const groups = [];
   /** @param {string} own @param {(name: string) => Row[]} rows @param {string} [group] */
-  const add = (own, rows, group = own) => groups.push({ group, own, rows: rows(calledBy(state, group, own)) });
+  const add = (own, rows, group = own) => groups.push({ group, own, rows: rows(groupName(state, group, own)) });
   add("EN", (name) => [{ kind: "signal", name, bit: EN, ink: "--enable" }]);
   for (const signal of LINE) {
-    if (!away.includes(signal)) add(signal.name, () => lineRows(state, signal));
+    if (!hiddenSignals.includes(signal)) add(signal.name, () => lineRows(state, signal));
     if (signal.bit === RX && hasLine(state))
       add(framed ? "frames" : "packets", (name) => [{ kind: "packets", name, ink: "--packet" }], "packets");
     if (signal.bit === TX && framed) add("replies", (name) => [{ kind: "replies", name, ink: "--reply" }]);
@@ -108,12 +108,12 @@ export function groupsOf(state) {
 /** @param {State} state @param {number} channel @returns {Row[]} */
 function channelRows(state, channel) {
   const [dir, step] = signalsOfChannel(state, channel);
-  const { [channel]: called } = state.panes.pulses.names;
+  const { [channel]: userName } = state.panes.pulses.names;
   return isFolded(state, channel)
     ? [
         {
           kind: "folded",
-          name: calledBy(state, `${channel}`, `ch ${channel}`),
+          name: groupName(state, `${channel}`, `ch ${channel}`),
           bit: channel,
           dir: DIR + channel,
           ink: "--step",
@@ -122,12 +122,12 @@ function channelRows(state, channel) {
         },
       ]
     : [
-        { kind: "signal", ...dir, short: called && "DIR", ink: "--dir", channel, open: true },
-        { kind: "signal", ...step, short: called, ink: "--step", channel },
+        { kind: "signal", ...dir, short: userName && "DIR", ink: "--dir", channel, open: true },
+        { kind: "signal", ...step, short: userName, ink: "--step", channel },
       ];
 }
 
-/** The visible groups: those that are not hidden, and that of the selected signal. @param {State} state */
+/** The visible groups: those that are not hidden, and the one of the selected signal. @param {State} state */
 export function shownGroups(state) {
   const { hidden } = state.panes.pulses;
   return groupsOf(state).filter(
@@ -142,21 +142,21 @@ export function rowsOf(state) {
 
 /** @param {State} state @param {number} channel */
 function signalsOfChannel(state, channel) {
-  const name = calledBy(state, `${channel}`, `${channel}`);
+  const name = groupName(state, `${channel}`, `${channel}`);
   return [
     { name: `DIR ${name}`, bit: DIR + channel },
     { name: `STEP ${name}`, bit: channel },
   ];
 }
 
-/** Every signal that there is, visible or not. @param {State} state @returns {{name: string, bit: number}[]} */
+/** All signals, visible or not. @param {State} state @returns {{name: string, bit: number}[]} */
 export function signalsOf(state) {
-  const line = [{ name: "EN", bit: EN }, ...LINE].map(({ name, bit }) => ({ name: calledBy(state, name, name), bit }));
+  const line = [{ name: "EN", bit: EN }, ...LINE].map(({ name, bit }) => ({ name: groupName(state, name, name), bit }));
   const channels = Array.from({ length: channelsOf(state) }, (_, channel) => signalsOfChannel(state, channel));
   return [...line, ...channels.flat()];
 }
 
-/** What a signal is called. @param {State} state @param {number} bit */
+/** The name of a signal. @param {State} state @param {number} bit */
 export function nameOf(state, bit) {
   return signalsOf(state).find((signal) => signal.bit === bit)?.name ?? "";
 }

@@ -13,16 +13,16 @@ import { hasLine } from "./rows.js";
 /** @typedef {import("../../state/types.js").Timing} Timing */
 /** @typedef {import("../../state/types.js").Decoded} Decoded */
 /** @typedef {import("./rows.js").SpanRow | import("./rows.js").LineRow} DecodedRow */
-/** @typedef {{start: number, end: number, texts: string[], marked: boolean, ink: string | null, packet: number | null, sample?: number | null}} Span  Cycles; the texts from the longest to the shortest. */
+/** @typedef {{start: number, end: number, texts: string[], marked: boolean, ink: string | null, packet: number | null, sample?: number | null}} Span  In cycles. `texts` are alternatives, from the longest to the shortest. */
 
-/** Spans that are drawn one by one; more than that are too narrow to be told apart. */
-const MOST = 250;
-/** A bit is drawn from this width on, in CSS pixels. */
+/** Maximum spans that are drawn; more would be too narrow to distinguish. */
+const MAX_SPANS = 250;
+/** Minimum width of a drawn bit, in CSS pixels. */
 const BIT_PX = 6;
 /** @type {Decoded} */
-const NOTHING = { rx: { bits: [], bytes: [], fields: [] }, tx: { bits: [], bytes: [], fields: [] }, more: false };
+const EMPTY = { rx: { bits: [], bytes: [], fields: [] }, tx: { bits: [], bytes: [], fields: [] }, more: false };
 
-/** Colours of what is not as usual. @type {{[mark: string]: string}} */
+/** Colors of special outcomes. @type {{[mark: string]: string}} */
 const INKS = { bad: "--error", repeated: "--warning", foreign: "--quiet" };
 
 /** @param {{engine: import("../../engine/engine.js").Engine}} page */
@@ -33,41 +33,44 @@ export function createSpans({ engine }) {
   let ticks = { rows: [], more: false };
   /** @type {Timing | null} */
   let timing = null;
-  /** @type {State["result"]} What `timing` is about. */
-  let checked = null;
+  /** The result of `timing`. @type {State["result"]} */
+  let timedResult = null;
 
-  let decoded = NOTHING;
+  let decoded = EMPTY;
 
-  /** Requests what lies in the shown time, and calls `ready` as each answer comes; false where a newer question took their place. @param {State} state @param {number} width  CSS pixels. @param {() => void} ready @returns {Promise<boolean>} */
-  async function fetch(state, width, ready) {
+  /** Requests the spans of the visible time and calls `onReply` after each reply. Returns false if a newer request replaced it. @param {State} state @param {number} width  CSS pixels. @param {() => void} onReply @returns {Promise<boolean>} */
+  async function fetch(state, width, onReply) {
     const { start, end } = shown(state);
     const margin = (end - start) / 4;
     const [from, to] = [Math.max(0, start - margin), end + margin];
-    const line = hasLine(state);
-    const known = checked === state.result;
-    /** @template T @param {Promise<T> | T} request @param {(reply: T) => void} keep */
-    const taken = async (request, keep) => {
+    const isLineUsed = hasLine(state);
+    const isTimingKnown = timedResult === state.result;
+    /** @template T @param {Promise<T> | T} request @param {(reply: T) => void} store */
+    const receive = async (request, store) => {
       const reply = await Promise.resolve(request).catch(unlessDropped);
       if (reply === undefined || reply === null) return false;
-      keep(/** @type {T} */ (reply));
-      ready();
+      store(/** @type {T} */ (reply));
+      onReply();
       return true;
     };
-    const answers = await Promise.all([
-      taken(line ? engine.latest("spans", "packets_in", from, to, MOST) : { rows: [], more: false }, (reply) => {
-        packets = reply;
-      }),
-      taken(engine.latest("ticks", "ticks_in", from, to, MOST), (reply) => {
+    const replies = await Promise.all([
+      receive(
+        isLineUsed ? engine.latest("spans", "packets_in", from, to, MAX_SPANS) : { rows: [], more: false },
+        (reply) => {
+          packets = reply;
+        },
+      ),
+      receive(engine.latest("ticks", "ticks_in", from, to, MAX_SPANS), (reply) => {
         ticks = reply;
       }),
-      taken(
-        line ? engine.latest("decoded", "decoded", from, to, MOST, Math.floor(width / (7 * BIT_PX))) : NOTHING,
+      receive(
+        isLineUsed ? engine.latest("decoded", "decoded", from, to, MAX_SPANS, Math.floor(width / (7 * BIT_PX))) : EMPTY,
         (reply) => {
           decoded = reply;
         },
       ),
-      known ||
-        taken(
+      isTimingKnown ||
+        receive(
           selected(state)?.violations
             ? engine.latest("violations", "timing")
             : { driver: null, total: 0, rules: [], violations: [] },
@@ -76,11 +79,11 @@ export function createSpans({ engine }) {
           },
         ),
     ]);
-    if (answers[3]) checked = state.result;
-    return answers.every(Boolean);
+    if (replies[3]) timedResult = state.result;
+    return replies.every(Boolean);
   }
 
-  /** Whether a decoder has too much in the shown time to tell it apart. @param {DecodedRow} row */
+  /** Whether a row has too many spans in the visible time to draw them. @param {DecodedRow} row */
   function isDense(row) {
     if (row.kind === "ticks") return ticks.more;
     if (!("wire" in row)) return row.kind !== "violations" && packets.more;
@@ -94,12 +97,12 @@ export function createSpans({ engine }) {
     if (row.kind === "violations") return violations(state);
     const { start, end } = shown(state);
     if (isDense(row)) {
-      const what = row.kind === "packets" && state.result?.summary.framed ? "frames" : row.kind;
+      const noun = row.kind === "packets" && state.result?.summary.framed ? "frames" : row.kind;
       return [
         {
           start,
           end,
-          texts: [`zoom in to see each of the ${what}`, "zoom in"],
+          texts: [`zoom in to see the ${noun}`, "zoom in"],
           marked: false,
           ink: null,
           packet: null,
@@ -113,25 +116,25 @@ export function createSpans({ engine }) {
         ink: span.bad ? "--error" : null,
       }));
     }
-    if (row.kind === "ticks") return ticks.rows.map((tick) => ofTick(state, tick));
+    if (row.kind === "ticks") return ticks.rows.map((tick) => tickSpan(state, tick));
     return packets.rows
-      .filter((each) => (row.kind === "replies") === onReplies(each))
-      .map((each) => ofPacket(state, each));
+      .filter((each) => (row.kind === "replies") === isOnReplyRow(each))
+      .map((each) => packetSpan(state, each));
   }
 
-  /** Violations in the shown time, each as long as what was measured. @param {State} state @returns {Span[]} */
+  /** Violations in the visible time, each as long as its measured time. @param {State} state @returns {Span[]} */
   function violations(state) {
     const { start, end } = shown(state);
     const clock = state.result?.summary.clock_hz ?? 1;
     const found = (timing?.violations ?? []).filter(
       ({ cycle, measured_cycles }) => cycle >= start && cycle - measured_cycles <= end,
     );
-    if (found.length > MOST)
+    if (found.length > MAX_SPANS)
       return [
         {
           start,
           end,
-          texts: [`${found.length} violations: zoom in to see each`, "zoom in"],
+          texts: [`${found.length} violations: zoom in to see them`, "zoom in"],
           marked: false,
           ink: "--error",
           packet: null,
@@ -154,13 +157,13 @@ export function createSpans({ engine }) {
   return { fetch, spansOf, isDense };
 }
 
-/** What the controller itself sends, on TX. @param {PacketRow} row */
-function onReplies({ kind, mark }) {
+/** Whether a packet is in the row of replies: what the controller sends on TX. @param {PacketRow} row */
+function isOnReplyRow({ kind, mark }) {
   return kind === "collision" || (kind === "reply" && mark !== "foreign");
 }
 
 /** @param {State} state @param {PacketRow} row @returns {Span} */
-function ofPacket(state, { index, kind, start_cycle, end_cycle, hex, fields, outcome, why, mark }) {
+function packetSpan(state, { index, kind, start_cycle, end_cycle, hex, fields, outcome, why, mark }) {
   const shownOutcome = mark === "good" ? "" : outcome;
   const [short] = fields.split(/, |: (?=[A-Z]+,)/);
   const whole = why ? [[fields, `${shownOutcome}: ${why}`]] : [];
@@ -180,7 +183,7 @@ function ofPacket(state, { index, kind, start_cycle, end_cycle, hex, fields, out
 }
 
 /** @param {State} state @param {TickRow} tick @returns {Span} */
-function ofTick(state, { start_cycle, end_cycle, row, fields }) {
+function tickSpan(state, { start_cycle, end_cycle, row, fields }) {
   const texts = [row === null ? fields : `#${row} · ${fields}`, fields, ...(row === null ? [] : [`#${row}`, `${row}`])];
   return {
     start: start_cycle,

@@ -10,20 +10,20 @@ import { aboveNoise, amplitudesOf, FLOOR_DB, namedSpectra, reference } from "./h
 
 /** Width of the tick labels in CSS pixels. */
 const GUTTER = 58;
-/** Height of the frequencies under the chart. */
+/** Height of the frequency labels below the chart. */
 const TICKS_PX = 20;
-/** Room for a frequency's text, in CSS pixels. */
+/** Width of a frequency label, in CSS pixels. */
 const LABEL_PX = 56;
 
-/** What is selected in the view's head. @returns {{quantity: Quantity, db: boolean}} */
+/** The quantity and scale that are selected in the header. @returns {{quantity: Quantity, db: boolean}} */
 export function selectedSpectrum() {
   const value = (/** @type {string} */ id) => /** @type {HTMLSelectElement} */ (byId(id)).value;
   return { quantity: /** @type {Quantity} */ (value("spectrum-quantity")), db: value("spectrum-scale") === "db" };
 }
 
 /**
- * Of harmonics that fall into one pixel the strongest: more cannot be seen, and each stem takes its time.
- * @param {ArrayLike<number>} amplitudes  Of the first harmonic first.
+ * The strongest harmonic of each pixel; others would be invisible, but cost time.
+ * @param {ArrayLike<number>} amplitudes  The first harmonic first.
  * @param {(n: number) => number} pixel
  * @param {number} from @param {number} to  The visible harmonics.
  */
@@ -39,26 +39,26 @@ function strongest(amplitudes, pixel, from, to) {
 }
 
 /**
- * Ticks of a logarithmic axis and their labels, one per line: 1, 2 and 5, or 1, times powers of ten; of the powers each
- * second, third or so where they are more than wanted; and where that leaves too few, round numbers as on a linear axis.
- * @param {number} min @param {number} max  Hz. @param {number} wanted  Most ticks.
+ * Ticks of a logarithmic axis and their labels, one per line. They are 1, 2 and 5 times powers of ten, or powers of ten, or every
+ * second, third, … power of ten. If fewer than three of these are visible, they are round numbers as on a linear axis.
+ * @param {number} min @param {number} max  Hz. @param {number} maxTicks
  */
-function logarithmic(min, max, wanted) {
+function logarithmicTicks(min, max, maxTicks) {
   const powers = Array.from({ length: 19 }, (_, at) => at - 9);
   const multiples = (/** @type {number} */ every, /** @type {number[]} */ times) =>
     powers
       .filter((power) => power % every === 0)
       .flatMap((power) => times.map((time) => Number(`${time}e${power}`)))
       .filter((hz) => hz >= min && hz <= max);
-  const coarser = [multiples(1, [1, 2, 5]), ...powers.slice(10).map((every) => multiples(every, [1]))];
-  let ticks = coarser.find(({ length }) => length <= Math.max(2, wanted)) ?? [];
+  const candidates = [multiples(1, [1, 2, 5]), ...powers.slice(10).map((every) => multiples(every, [1]))];
+  let ticks = candidates.find(({ length }) => length <= Math.max(2, maxTicks)) ?? [];
   if (ticks.length < 3) {
     const power = 10 ** Math.floor(Math.log10((max - min) / 2));
     const step = power * ([5, 2, 1].find((time) => (max - min) / (time * power) >= 2) ?? 1);
     const first = Math.ceil(min / step);
     ticks = Array.from({ length: Math.floor(max / step) - first + 1 }, (_, at) => (first + at) * step);
   }
-  return { ticks: ticks.map(frequency.place), labels: ticks.map((hz) => si(hz, "Hz", 6)).join("\n") };
+  return { ticks: ticks.map(frequency.positionOf), labels: ticks.map((hz) => si(hz, "Hz", 6)).join("\n") };
 }
 
 /** @param {Spectra} spectra @param {Quantity} quantity @param {boolean} db @param {number} width  CSS pixels. */
@@ -66,15 +66,16 @@ export function spectrumChart(spectra, quantity, db, width) {
   const all = namedSpectra(spectra);
   const [, { fundamental_hz }] = all[0];
   const order = Math.max(...all.map(([, spectrum]) => amplitudesOf(spectrum, quantity).length));
-  frequency.of(fundamental_hz, order);
+  frequency.setLines(fundamental_hz, order);
   const { start: min, end: max } = frequency.hertz();
   const from = Math.max(1, Math.ceil(min / fundamental_hz));
   const to = Math.min(order, Math.floor(max / fundamental_hz));
   const { start, end } = frequency.shown();
   const across = Math.max(1, width - GUTTER - 26);
-  const pixel = (/** @type {number} */ n) => ((frequency.place(n * fundamental_hz) - start) / (end - start)) * across;
-  const apart = to > from ? pixel(to) - pixel(to - 1) : across;
-  const thick = Math.max(1.5, Math.min(5, apart / 3));
+  const pixel = (/** @type {number} */ n) =>
+    ((frequency.positionOf(n * fundamental_hz) - start) / (end - start)) * across;
+  const spacing = to > from ? pixel(to) - pixel(to - 1) : across;
+  const stemWidth = Math.max(1.5, Math.min(5, spacing / 3));
   const stems = all.map(([name, spectrum]) => ({
     name,
     spectrum,
@@ -89,7 +90,7 @@ export function spectrumChart(spectra, quantity, db, width) {
       unit: "Hz",
       prefix: true,
       label_px: TICKS_PX,
-      ...(frequency.isLog() ? logarithmic(min, max, across / LABEL_PX) : {}),
+      ...(frequency.isLog() ? logarithmicTicks(min, max, across / LABEL_PX) : {}),
     },
     y: db
       ? { min: FLOOR_DB, max: 10, unit: "dB", prefix: false, label_px: GUTTER }
@@ -97,11 +98,11 @@ export function spectrumChart(spectra, quantity, db, width) {
     series: stems.map(({ name, spectrum, amplitudes, shown }) => ({
       color: color(name === "ideal" ? "--ideal" : "--actual"),
       opacity: 1,
-      width: thick,
-      x: shown.map((n) => frequency.place(n * fundamental_hz)),
+      width: stemWidth,
+      x: shown.map((n) => frequency.positionOf(n * fundamental_hz)),
       shape: {
         stems: {
-          shift: all.length === 1 ? 0 : (name === "ideal" ? -1 : 1) * (thick / 2 + 0.5),
+          shift: all.length === 1 ? 0 : (name === "ideal" ? -1 : 1) * (stemWidth / 2 + 0.5),
           y: shown.map((n) => {
             const amplitude = amplitudes[n - 1];
             return db ? 20 * Math.log10(aboveNoise(amplitude) / reference(spectrum, quantity)) : amplitude;

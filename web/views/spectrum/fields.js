@@ -1,31 +1,31 @@
 /** Fields and buttons of the visible frequencies. */
-import { button, byId, element, say } from "../../dom.js";
+import { button, byId, element, setText } from "../../dom.js";
 import { si } from "../../state/number.js";
 import { parseNumber } from "../../state/parse_number.js";
 import { frequency } from "./frequency.js";
 
 /**
- * @param {HTMLElement} place
- * @param {{zoom: (factor: number) => void, fit: () => void, back: () => void, log: () => void, changed: () => void}} actions
+ * @param {HTMLElement} root
+ * @param {{zoom: (factor: number) => void, fit: () => void, back: () => void, toggleLog: () => void, redraw: () => void}} actions
  */
-export function createFields(place, { zoom, fit, back, log, changed }) {
-  const wrong = element("span", { class: "error", id: "spectrum-error", "aria-live": "polite" });
+export function createFields(root, { zoom, fit, back, toggleLog, redraw }) {
+  const error = element("span", { class: "error", id: "spectrum-error", "aria-live": "polite" });
   const inputs = ["from", "to"].map((name) =>
-    element("input", { class: "time", id: `spectrum-${name}`, "aria-describedby": wrong.id }),
+    element("input", { class: "time", id: `spectrum-${name}`, "aria-describedby": error.id }),
   );
   const press = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ run) =>
     button(text, label, run);
   const backButton = press("Back", "Back to the previous view (Backspace)", back);
-  const logButton = press("log", "log: logarithmic frequencies (L)", log);
+  const logButton = press("log", "log: logarithmic frequencies (L)", toggleLog);
   logButton.id = "spectrum-log";
   byId("spectrum-scale").parentElement?.after(logButton);
-  place.append(
+  root.append(
     ...inputs.map((input, at) => element("label", {}, `${["from", "to"][at]} `, input)),
     press("+", "Zoom in (+)", () => zoom(0.5)),
     press("−", "Zoom out (−)", () => zoom(2)),
     press("Fit", "Fit: the whole spectrum (0 or double-click)", fit),
     backButton,
-    wrong,
+    error,
   );
   for (const input of inputs) input.addEventListener("change", typed);
 
@@ -36,19 +36,19 @@ export function createFields(place, { zoom, fit, back, log, changed }) {
       return read;
     });
     const message = "message" in from ? from.message : "message" in to ? to.message : "";
-    if (message || "message" in from || "message" in to) return say(wrong, message);
-    if (from.value < 0) return say(wrong, "“from” is out of range; use 0 Hz or more.");
-    if (to.value <= from.value) return say(wrong, "“to” must be above “from”.");
-    say(wrong, "");
+    if (message || "message" in from || "message" in to) return setText(error, message);
+    if (from.value < 0) return setText(error, "“from” is out of range; use 0 Hz or more.");
+    if (to.value <= from.value) return setText(error, "“to” is not above “from”; use a higher frequency.");
+    setText(error, "");
     frequency.showHertz(from.value, to.value);
-    changed();
+    redraw();
     render(frequency.hertz(), true);
   }
 
-  /** @param {import("../../state/types.js").Span} shown  In Hz. @param {boolean} [all]  Also the field that has the focus. */
-  function render({ start, end }, all = false) {
+  /** @param {import("../../state/types.js").Span} shown  In Hz. @param {boolean} [includesFocused]  Whether to update the focused field, too. */
+  function render({ start, end }, includesFocused = false) {
     for (const [at, hz] of [start, end].entries())
-      if (all || document.activeElement !== inputs[at]) inputs[at].value = si(hz, "Hz", 5);
+      if (includesFocused || document.activeElement !== inputs[at]) inputs[at].value = si(hz, "Hz", 5);
     backButton.disabled = !frequency.canGoBack();
     logButton.setAttribute("aria-pressed", String(frequency.isLog()));
   }

@@ -3,9 +3,9 @@ import { DEPTH } from "../../state/history.js";
 
 /** @typedef {import("../../state/types.js").Span} Span */
 
-/** Beyond the fundamental and the highest line, as ratios on a logarithmic axis. */
-const AIR = 1.25;
-/** Least part of the whole axis that is shown is so many lines, or this ratio. */
+/** Margin below the fundamental and above the highest line of a logarithmic axis, as a ratio. */
+const MARGIN = 1.25;
+/** Minimum visible range: a number of lines, or a ratio on a logarithmic axis. */
 const [MIN_LINES, MIN_RATIO] = [2, 1.05];
 
 let fundamental_hz = 1;
@@ -19,8 +19,8 @@ let before = [];
 let gesture = null;
 
 export const frequency = {
-  /** Takes the lines that there are; others than before are shown as a whole. @param {number} hz @param {number} lines */
-  of(hz, lines) {
+  /** Sets the lines. Different lines reset the visible range. @param {number} hz @param {number} lines */
+  setLines(hz, lines) {
     if (hz === fundamental_hz && lines === order) return;
     [fundamental_hz, order] = [hz, lines];
     [window, before] = [null, []];
@@ -28,16 +28,16 @@ export const frequency = {
 
   isLog: () => log,
 
-  /** Turns to the other kind of axis, with the same visible frequencies. @param {boolean} on */
+  /** Switches to a logarithmic or linear axis with the same visible frequencies. @param {boolean} on */
   setLog(on) {
     if (on === log) return;
     const { start, end } = hertz();
     log = on;
-    if (window) window = clamp({ start: place(Math.max(start, least())), end: place(end) });
+    if (window) window = clamp({ start: positionOf(Math.max(start, minFrequency())), end: positionOf(end) });
     before = [];
   },
 
-  place,
+  positionOf,
   shown,
   hertz,
 
@@ -52,7 +52,7 @@ export const frequency = {
 
   /** Shows these frequencies, in Hz. @param {number} from @param {number} to */
   showHertz(from, to) {
-    frequency.show({ start: place(Math.max(from, log ? least() : 0)), end: place(to) });
+    frequency.show({ start: positionOf(Math.max(from, log ? minFrequency() : 0)), end: positionOf(to) });
   },
 
   back() {
@@ -63,40 +63,40 @@ export const frequency = {
   canGoBack: () => before.length > 0,
 };
 
-/** The least frequency of a logarithmic axis, which has no 0. */
-function least() {
-  return fundamental_hz / AIR;
+/** The minimum of a logarithmic axis, which has no 0. */
+function minFrequency() {
+  return fundamental_hz / MARGIN;
 }
 
-/** Place of a frequency. @param {number} hz */
-function place(hz) {
+/** Position of a frequency on the axis. @param {number} hz */
+function positionOf(hz) {
   return log ? Math.log10(hz) : hz;
 }
 
-/** @returns {Span} */
-function all() {
+/** The whole axis. @returns {Span} */
+function wholeRange() {
   return log
-    ? { start: Math.log10(least()), end: Math.log10(fundamental_hz * Math.max(order, 2) * AIR) }
+    ? { start: Math.log10(minFrequency()), end: Math.log10(fundamental_hz * Math.max(order, 2) * MARGIN) }
     : { start: 0, end: fundamental_hz * (order + 1) };
 }
 
 /** @returns {Span} */
 function shown() {
-  return window ?? all();
+  return window ?? wholeRange();
 }
 
-/** The same in Hz. @returns {Span} */
+/** The visible range in Hz. @returns {Span} */
 function hertz() {
   const { start, end } = shown();
   return log ? { start: 10 ** start, end: 10 ** end } : { start, end };
 }
 
-/** A part of the axis, neither too short nor beyond its ends. @param {Span} wanted @returns {Span} */
+/** A range within the axis that is not too short. @param {Span} wanted @returns {Span} */
 function clamp({ start, end }) {
-  const whole = all();
-  const most = whole.end - whole.start;
-  const few = Math.min(most, log ? Math.log10(MIN_RATIO) : MIN_LINES * fundamental_hz);
-  const length = Math.min(most, Math.max(few, end - start));
+  const whole = wholeRange();
+  const maxLength = whole.end - whole.start;
+  const minLength = Math.min(maxLength, log ? Math.log10(MIN_RATIO) : MIN_LINES * fundamental_hz);
+  const length = Math.min(maxLength, Math.max(minLength, end - start));
   const from = Math.max(whole.start, Math.min(whole.end - length, (start + end - length) / 2));
   return { start: from, end: from + length };
 }

@@ -1,5 +1,5 @@
 /** The pane of the spectrum; loads spectrum.js on demand. */
-import { byId, say } from "../../dom.js";
+import { byId, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -10,10 +10,10 @@ export function createSpectrum({ engine, dispatch, now }) {
   const note = byId("spectrum-note");
   /** @type {import("../../state/types.js").Spectra | null} */
   let spectra = null;
-  /** What the view has drawn. @type {import("../../state/types.js").Spectra | null} */
+  /** The drawn spectra. @type {import("../../state/types.js").Spectra | null} */
   let drawn = null;
-  /** The result that it is of. @type {State["result"]} */
-  let about = null;
+  /** The result of the spectra. @type {State["result"]} */
+  let spectraResult = null;
   /** @type {ReturnType<typeof import("./spectrum.js").createSpectrumView> | null} */
   let view = null;
   const watcher = new ResizeObserver(() => void refresh(now()));
@@ -22,36 +22,36 @@ export function createSpectrum({ engine, dispatch, now }) {
   /** @param {State} state */
   async function refresh(state) {
     if (!state.result || !byId("view-spectrum").checkVisibility()) return;
-    if (about !== state.result) {
-      about = state.result;
+    if (spectraResult !== state.result) {
+      spectraResult = state.result;
       const reply = await engine.latest("spectrum", "spectrum").catch(unlessDropped);
-      if (about !== state.result) return;
+      if (spectraResult !== state.result) return;
       if (!reply) {
-        about = null;
+        spectraResult = null;
         return;
       }
       spectra = reply;
-      const some = reply.ideal ?? reply.pulses;
-      const bare = !some?.periodic;
-      split.hidden = !some;
-      // What a sensor lets through is there where there is one.
+      const first = reply.ideal ?? reply.pulses;
+      const isEmpty = !first?.periodic;
+      split.hidden = !first;
+      // The filtered acceleration needs a sensor in the scenario.
       const select = /** @type {HTMLSelectElement} */ (byId("spectrum-quantity"));
       const filtered = select.options[select.options.length - 1];
-      filtered.hidden = !some?.acceleration_filtered;
+      filtered.hidden = !first?.acceleration_filtered;
       if (filtered.hidden && filtered.selected) select.value = "acceleration";
-      dispatch({ type: "bare", view: "spectrum", bare });
-      // Until the view has drawn it, and where there is no room to, the figure before is not this run's.
-      if (bare) say(byId("thd"), "");
-      say(note, reply.note);
+      dispatch({ type: "empty", view: "spectrum", isEmpty });
+      // Removes the value of the previous run, because an empty view is not redrawn.
+      if (isEmpty) setText(byId("thd"), "");
+      setText(note, reply.note);
     }
     if (!spectra || spectra === drawn || !split.checkVisibility()) return;
     const loaded = await load().catch(() => null);
-    if (!loaded) return say(note, "The spectrum could not be loaded. Check the network, then fold and unfold it.");
+    if (!loaded) return setText(note, "The spectrum could not be loaded. Check the network, then fold and unfold it.");
     drawn = spectra;
-    await loaded.take(spectra);
+    await loaded.setSpectra(spectra);
   }
 
-  /** What draws it, with its keys. */
+  /** Loads the view with its keys. */
   async function load() {
     const { createSpectrumView } = await import("./spectrum.js");
     view ??= createSpectrumView({ dispatch, now });

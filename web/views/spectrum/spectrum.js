@@ -1,6 +1,6 @@
 /** The spectrum view: harmonics of the ideal and the actual motion as chart and table, and the distortion. */
-import { button, byId, element, say } from "../../dom.js";
-import { listen } from "../../shell/commands.js";
+import { button, byId, element, setText } from "../../dom.js";
+import { registerCommands } from "../../shell/commands.js";
 import { si } from "../../state/number.js";
 import { gestures, moved, zoomed } from "../../time/gestures.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
@@ -13,7 +13,7 @@ import { createHarmonicsTable } from "./table.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Spectra} Spectra */
 
-/** Of the harmonics within this many CSS pixels of the pointer the strongest is meant. */
+/** The pointer selects the strongest harmonic within this distance, in CSS pixels. */
 const NEAR_PX = 2;
 
 /** @param {import("../../state/types.js").Page} page */
@@ -36,12 +36,12 @@ export function createSpectrumView({ dispatch, now }) {
   const table = createHarmonicsTable(point);
   const show = (/** @type {import("../../state/types.js").Span | null} */ window, /** @type {string} */ joins) => {
     frequency.show(window, joins);
-    soon();
+    drawSoon();
   };
-  /** The selected harmonic's place, if it is visible. */
+  /** Position of the selected harmonic, if it is visible. */
   const anchor = () => {
     const { start, end } = frequency.shown();
-    const at = frequency.place(rows[(now().harmonic ?? 0) - 1]?.hz ?? Number.NaN);
+    const at = frequency.positionOf(rows[(now().harmonic ?? 0) - 1]?.hz ?? Number.NaN);
     return at >= start && at <= end ? at : undefined;
   };
   const actions = {
@@ -49,13 +49,13 @@ export function createSpectrumView({ dispatch, now }) {
     fit: () => show(null, ""),
     back: () => {
       frequency.back();
-      soon();
+      drawSoon();
     },
-    log: () => {
+    toggleLog: () => {
       frequency.setLog(!frequency.isLog());
-      soon();
+      drawSoon();
     },
-    changed: soon,
+    redraw: drawSoon,
   };
   const fields = createFields(byId("spectrum-tools"), actions);
   const tableButton = button("Table", "Show the harmonics as a table", () => {
@@ -70,7 +70,7 @@ export function createSpectrumView({ dispatch, now }) {
   byId("spectrum-log").after(tableButton);
 
   for (const id of ["spectrum-quantity", "spectrum-scale"]) byId(id).addEventListener("change", paint);
-  watch(canvas, soon);
+  watch(canvas, drawSoon);
   gestures(slider, () => plot ?? { left: 0, right: 1 }, {
     shown: frequency.shown,
     show: (window, joins) => show(window, joins ?? ""),
@@ -80,85 +80,90 @@ export function createSpectrumView({ dispatch, now }) {
       picked = span;
       mark(now());
     },
-    hover: (at) => at !== null && choose(at),
-    click: (_, at) => choose(at),
+    hover: (at) => at !== null && select(at),
+    click: (_, at) => select(at),
   });
 
-  /** Chooses the harmonic that is meant by a place. @param {number} at */
-  function choose(at) {
+  /** Selects the strongest harmonic near a position. @param {number} at */
+  function select(at) {
     if (!plot || rows.length === 0) return;
     const { start, end } = frequency.shown();
     const reach = (NEAR_PX * (end - start)) / (plot.right - plot.left);
-    const strength = (/** @type {number} */ n) => Math.max(...rows[n - 1].parts.map(({ part }) => part));
+    const strength = (/** @type {number} */ n) => Math.max(...rows[n - 1].parts.map(({ ratio }) => ratio));
     let best = Math.round((frequency.isLog() ? 10 ** at : at) / rows[0].hz);
     best = Math.min(rows.length, Math.max(1, best));
-    const near = (/** @type {number} */ n) => rows[n - 1] && Math.abs(frequency.place(rows[n - 1].hz) - at) <= reach;
+    const near = (/** @type {number} */ n) =>
+      rows[n - 1] && Math.abs(frequency.positionOf(rows[n - 1].hz) - at) <= reach;
     for (const by of [-1, 1]) for (let n = best + by; near(n); n += by) if (strength(n) > strength(best)) best = n;
     point(best);
   }
 
-  /** @param {number} n */
-  function go(n) {
+  /** Selects a harmonic and brings it into view. @param {number} n */
+  function goTo(n) {
     const to = Math.min(rows.length, Math.max(1, n));
     if (rows.length === 0) return;
     point(to);
     const { start, end } = frequency.shown();
-    const at = frequency.place(rows[to - 1].hz);
+    const at = frequency.positionOf(rows[to - 1].hz);
     if (at < start || at > end) show({ start: at - (end - start) / 2, end: at + (end - start) / 2 }, "follow");
   }
-  const step = (/** @type {number} */ by) => go((now().harmonic ?? (by > 0 ? 0 : 2)) + by);
+  const step = (/** @type {number} */ by) => goTo((now().harmonic ?? (by > 0 ? 0 : 2)) + by);
   for (const target of [slider, byId("harmonics-scroll")]) {
-    const upright = target === slider;
-    listen(target, "Spectrum", [
-      { keys: upright ? ["ArrowRight", "ArrowUp"] : ["ArrowRight"], text: "next harmonic", run: () => step(1) },
-      { keys: upright ? ["ArrowLeft", "ArrowDown"] : ["ArrowLeft"], text: "previous harmonic", run: () => step(-1) },
-      { keys: ["Home"], text: "the fundamental", run: () => go(1) },
-      { keys: ["End"], text: "highest harmonic", run: () => go(rows.length) },
+    const hasVerticalKeys = target === slider;
+    registerCommands(target, "Spectrum", [
+      { keys: hasVerticalKeys ? ["ArrowRight", "ArrowUp"] : ["ArrowRight"], text: "next harmonic", run: () => step(1) },
+      {
+        keys: hasVerticalKeys ? ["ArrowLeft", "ArrowDown"] : ["ArrowLeft"],
+        text: "previous harmonic",
+        run: () => step(-1),
+      },
+      { keys: ["Home"], text: "select the fundamental", run: () => goTo(1) },
+      { keys: ["End"], text: "select the highest harmonic", run: () => goTo(rows.length) },
       { keys: ["+", "="], text: "zoom in around the selected harmonic", run: () => actions.zoom(0.5) },
       { keys: ["-", "−"], text: "zoom out", run: () => actions.zoom(2) },
       {
         keys: ["Shift+ArrowLeft"],
-        text: "lower frequencies",
+        text: "show lower frequencies",
         run: () => show(moved(frequency.shown(), -0.1), "pan"),
       },
       {
         keys: ["Shift+ArrowRight"],
-        text: "higher frequencies",
+        text: "show higher frequencies",
         run: () => show(moved(frequency.shown(), 0.1), "pan"),
       },
       { keys: ["0"], text: "show the whole spectrum", run: actions.fit },
       { keys: ["Backspace"], text: "back to the previous view", run: actions.back },
-      { keys: ["l"], text: "logarithmic or linear frequencies", run: actions.log },
+      { keys: ["l"], text: "switch between logarithmic and linear frequencies", run: actions.toggleLog },
       { keys: ["b"], text: "turn box zoom on or off", run: () => dispatch({ type: "box", on: !now().box }) },
-      { keys: ["Escape"], text: "no harmonic", run: () => point(null) },
+      { keys: ["Escape"], text: "clear the selection", run: () => point(null) },
     ]);
   }
 
-  /** Draws in the next frame, however much has changed until then. */
-  function soon() {
+  /** Draws once in the next frame. */
+  function drawSoon() {
     frame ||= requestAnimationFrame(drawChart);
   }
 
-  /** Draws other spectra, once the curves and pulses are on the screen: a key that is pressed meanwhile waits for one of them, not for all. @param {Spectra} found */
-  async function take(found) {
+  /** Draws new spectra after the other views, so that a key pressed meanwhile does not wait for all of them. @param {Spectra} found */
+  async function setSpectra(found) {
     spectra = found;
     await new Promise((shown) => requestAnimationFrame(() => setTimeout(shown)));
     paint();
   }
 
-  /** What follows from the spectra and from what is selected of them. */
+  /** Updates texts, table and chart after a change of the spectra or of the selection. */
   function paint() {
     const { quantity, db } = selectedSpectrum();
-    const some = spectra?.ideal ?? spectra?.pulses ?? null;
+    const first = spectra?.ideal ?? spectra?.pulses ?? null;
     const note = byId("spectrum-note");
-    say(byId("thd"), spectra && some?.periodic ? distortion(spectra, quantity) : "");
-    say(note, `${spectra?.note ?? ""} ${some ? method(some) : ""}`.trim());
+    setText(byId("thd"), spectra && first?.periodic ? distortion(spectra, quantity) : "");
+    setText(note, `${spectra?.note ?? ""} ${first ? method(first) : ""}`.trim());
     note.title = note.textContent ?? "";
-    byId("spectrum-split").hidden = !some;
-    byId("spectrum-reading").hidden = !some;
-    say(amplitudes, db ? "dB of the fundamental" : UNITS[quantity]);
-    say(frequencies, some ? overFrequency(some) : "");
-    rows = spectra && some ? harmonics(spectra, quantity) : [];
+    byId("spectrum-split").hidden = !first;
+    byId("spectrum-reading").hidden = !first;
+    setText(amplitudes, db ? "dB of the fundamental" : UNITS[quantity]);
+    setText(frequencies, first ? overFrequency(first) : "");
+    rows = spectra && first ? harmonics(spectra, quantity) : [];
     table.show(rows);
     drawChart();
   }
@@ -180,19 +185,19 @@ export function createSpectrumView({ dispatch, now }) {
     mark(now());
   }
 
-  /** Highlights the harmonic that is pointed at, stem and row, and draws the box. @param {State} state */
+  /** Highlights the selected harmonic and draws the zoom box. @param {State} state */
   function mark({ harmonic }) {
     const row = harmonic === null ? undefined : rows[harmonic - 1];
     const { quantity, db } = selectedSpectrum();
-    const some = spectra?.ideal ?? spectra?.pulses;
-    const text = row ? describe(row, quantity, some?.periodic ?? false) : "";
-    const reading = (/** @type {string} */ of) => {
-      const part = row?.parts.find(({ name }) => name === of);
-      return part ? `${of} ${value(part, quantity, db)}` : of;
+    const first = spectra?.ideal ?? spectra?.pulses;
+    const text = row ? describe(row, quantity, first?.periodic ?? false) : "";
+    const reading = (/** @type {string} */ spectrum) => {
+      const line = row?.parts.find(({ name }) => name === spectrum);
+      return line ? `${spectrum} ${value(line, quantity, db)}` : spectrum;
     };
-    say(byId("spectrum-at"), row ? `n ${row.n} · ${si(row.hz, "Hz", 5)}` : "");
-    say(byId("spectrum-ideal"), reading("ideal"));
-    say(byId("spectrum-pulses"), reading("pulses"));
+    setText(byId("spectrum-at"), row ? `n ${row.n} · ${si(row.hz, "Hz", 5)}` : "");
+    setText(byId("spectrum-ideal"), reading("ideal"));
+    setText(byId("spectrum-pulses"), reading("actual"));
     slider.setAttribute("aria-valuemax", String(Math.max(1, rows.length)));
     slider.setAttribute("aria-valuenow", String(row?.n ?? 1));
     slider.setAttribute("aria-valuetext", text || "no harmonic selected");
@@ -208,9 +213,9 @@ export function createSpectrumView({ dispatch, now }) {
       layer.context.globalAlpha = 0.3;
       layer.context.fillRect(px(picked.start), top, px(picked.end) - px(picked.start), bottom - top);
     }
-    const at = row ? frequency.place(row.hz) : Number.NaN;
+    const at = row ? frequency.positionOf(row.hz) : Number.NaN;
     if (!(at >= start && at <= end)) return;
-    const half = Math.max(4, Math.min(12, px(frequency.place((row?.hz ?? 0) + rows[0].hz)) - px(at)) / 2);
+    const half = Math.max(4, Math.min(12, px(frequency.positionOf((row?.hz ?? 0) + rows[0].hz)) - px(at)) / 2);
     layer.context.globalAlpha = 0.3;
     layer.context.fillRect(px(at) - half, top, 2 * half, bottom - top);
     layer.context.globalAlpha = 1;
@@ -222,5 +227,5 @@ export function createSpectrumView({ dispatch, now }) {
   function render(state, before) {
     if (before?.harmonic !== state.harmonic) mark(state);
   }
-  return { take, render };
+  return { setSpectra, render };
 }

@@ -5,12 +5,12 @@ import { virtualRows } from "../virtual_rows.js";
 
 /** @typedef {ReturnType<typeof import("./harmonics.js").harmonics>} Rows */
 
-/** A part in percent; one with many noughts has an exponent in their place. @param {number} value */
+/** A percentage; a small one has an exponent instead of many zeros. @param {number} value */
 function percent(value) {
   return value > 0 && value < 1e-3 ? value.toExponential(2).replace("-", "−") : short(value, 3);
 }
 
-/** @param {(n: number) => void} point  Hears of the harmonic under the pointer. */
+/** @param {(n: number) => void} point  Called with the harmonic under the pointer. */
 export function createHarmonicsTable(point) {
   const scroller = byId("harmonics-scroll");
   const table = byId("harmonics");
@@ -23,7 +23,7 @@ export function createHarmonicsTable(point) {
 
   scroller.addEventListener("scroll", paint);
   new ResizeObserver(paint).observe(scroller);
-  // Not what comes to lie under a pointer that rests.
+  // Not `pointerover`: scrolling must not select the row under a pointer that does not move.
   for (const kind of ["pointermove", "click"])
     body.addEventListener(kind, (event) => {
       const row = event.target instanceof Element ? event.target.closest("tr") : null;
@@ -38,7 +38,7 @@ export function createHarmonicsTable(point) {
         const texts = [
           String(n),
           si(hz, "Hz"),
-          ...parts.flatMap(({ amplitude, part }) => [short(amplitude, 4), percent(100 * part)]),
+          ...parts.flatMap(({ amplitude, ratio }) => [short(amplitude, 4), percent(100 * ratio)]),
         ];
         const row = element("tr", { "data-n": String(n), "aria-rowindex": String(n + 1) });
         row.classList.toggle("highlighted", n === marked);

@@ -1,5 +1,5 @@
 /** The tab Compare: the selected move as every kind of motion (see study.js). */
-import { button, element, fill, say } from "../../dom.js";
+import { button, element, fill, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { pretty } from "../../state/number.js";
 import { createCompareCharts } from "./compare_charts.js";
@@ -15,8 +15,9 @@ import {
   subjectOf,
   whyRampRefused,
 } from "./compare_costs.js";
-import { field, focusRow, table } from "./parts.js";
+import { field } from "./parts.js";
 import { isAnother, selectedAxis } from "./selected_axis.js";
+import { focusRow, table } from "./table.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./compare_costs.js").Cost} Cost */
@@ -26,7 +27,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
   const about = element("span", { class: "study-note" });
   const moves = element("select");
   const moveLabel = element("label", {}, "move ", moves);
-  const ramp = field("Ramp", "s", 0.2, { least: 0, most: 1e6 }, () => {
+  const ramp = field("Ramp", "s", 0.2, { min: 0, max: 1e6 }, () => {
     followsRamp = false;
     refresh(now());
   });
@@ -83,7 +84,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
     ramp.root.hidden = all.hidden = typeof axis === "string";
     if (typeof axis === "string") {
       moveLabel.hidden = true;
-      return say(about, axis);
+      return setText(about, axis);
     }
     const subject = subjectOf(state, axis, Number(moves.value || 0));
     move = subject.index;
@@ -94,10 +95,10 @@ export function createCompare({ engine, dispatch, now, panel }) {
     subjectKey = subject.key;
     if (followsRamp) ramp.set(ownRamp(subject));
     all.hidden = subject.steps === 0;
-    say(about, aboutText(subject, axis.axis));
+    setText(about, aboutText(subject, axis.axis));
     if (subject.steps === 0) return undefined;
     const request = [axis.json, axis.controller, axis.axis, move, ramp.value(), POINTS];
-    const found = await engine.consider("compare", "compare", ...request).catch(unlessDropped);
+    const found = await engine.compute("compare", "compare", ...request).catch(unlessDropped);
     if (!found || own !== question) return undefined;
     rows = found;
     rowsOf = `${axisKey(state)} ${move}`;

@@ -1,5 +1,5 @@
 /** The charts of the tab Compare: all speeds in one, each acceleration in one of its own, and the keys of their lines. */
-import { element, say } from "../../dom.js";
+import { element, setText } from "../../dom.js";
 import { cleared, color, draw, watch } from "../../time/plot.js";
 import { isBounded, POINTS, rangeOf } from "./compare_costs.js";
 
@@ -60,7 +60,7 @@ export function createCompareCharts(shown, keys) {
     const range = rangeOf(rows.filter(isBounded), "at_acceleration");
     for (const [at, { name, canvas, key }] of small.entries()) {
       const row = rows[at];
-      say(name, row.name);
+      setText(name, row.name);
       canvas.setAttribute("aria-label", `Acceleration, ${row.name}`);
       /** @type {HTMLElement} */ (canvas.parentElement).hidden = !(row.at_acceleration && isBounded(row));
       draw(canvas, {

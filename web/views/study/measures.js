@@ -1,6 +1,8 @@
 /** The tab Measures: figures of the selected axis (see study.js). */
-import { element, fill, say } from "../../dom.js";
+
+import { element, fill, setText } from "../../dom.js";
 import { Dropped } from "../../engine/request_slots.js";
+import { errorMessage } from "../../state/error_message.js";
 import { isStale } from "../../state/queries.js";
 import {
   comparedNote,
@@ -12,7 +14,7 @@ import {
   sineNote,
   sineRows,
 } from "./measure_rows.js";
-import { table } from "./parts.js";
+import { table } from "./table.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 
@@ -45,13 +47,13 @@ export function createMeasures({ engine, panel }) {
 
   /** @param {import("./measure_rows.js").Measures} measures */
   function show(measures) {
-    say(compared.note, comparedNote(measures));
+    setText(compared.note, comparedNote(measures));
     compared.show(comparedRows(measures));
     duration.show(durationRows(measures));
     peaks.show(peakRows(measures));
     sine.root.hidden = !measures.sine;
     if (!measures.sine) return;
-    say(sine.note, sineNote(measures.sine));
+    setText(sine.note, sineNote(measures.sine));
     sine.show(sineRows(measures.sine));
   }
 
@@ -60,7 +62,7 @@ export function createMeasures({ engine, panel }) {
     const found = distortion(spectra, axis);
     thd.root.hidden = !found;
     if (!found) return;
-    say(thd.note, found.note);
+    setText(thd.note, found.note);
     thd.show(found.rows);
   }
 
@@ -69,21 +71,21 @@ export function createMeasures({ engine, panel }) {
     if (!result) return;
     const { controller, summary } = result;
     const [found, spectra, steps] = await Promise.all([
-      engine.considerRun("measures", "measures", controller, axis),
+      engine.computeForRun("measures", "measures", controller, axis),
       engine.latest("measures-thd", "spectrum"),
       engine.latest("measures-steps", "records_of", axis),
     ])
       .then(async ([found, spectra, run]) => {
         // The slot is the measures' own: a newer question ends this one.
         const figures =
-          found === null && (await engine.consider("measures", "step_figures", run, axis, summary.clock_hz));
+          found === null && (await engine.compute("measures", "step_figures", run, axis, summary.clock_hz));
         return [found, spectra, /** @type {import("./measure_rows.js").Figures | null} */ (figures || null)];
       })
       .catch((error) => {
         if (!(error instanceof Dropped)) {
           // Too many steps to be measured, say.
           rest.hidden = true;
-          say(about, error instanceof Error ? error.message : String(error));
+          setText(about, errorMessage(error));
         }
         return [];
       });
@@ -92,12 +94,12 @@ export function createMeasures({ engine, panel }) {
     own.root.hidden = !steps;
     for (const { root } of [compared, duration, peaks, sine]) root.hidden = !found;
     if (steps) {
-      say(about, `Channel ${axis} of the visible run.`);
+      setText(about, `Channel ${axis} of the visible run.`);
       own.show(figureRows(steps));
     } else if (found) {
-      say(about, `Axis ${axis} of the visible run.`);
+      setText(about, `Axis ${axis} of the visible run.`);
       show(found);
-    } else say(about, `Axis ${axis} has no motion, so there is no curve to compare with.`);
+    } else setText(about, `Axis ${axis} has no motion, so there is no curve to compare with.`);
     showDistortion(spectra, axis);
   }
 

@@ -1,5 +1,6 @@
 /** The tab Motor: limits, resonance and supply current of a motor (see study.js). */
-import { button, element, fill, say } from "../../dom.js";
+import { button, element, fill, setText } from "../../dom.js";
+import { createJob } from "./job.js";
 import { createMotorCharts } from "./motor_charts.js";
 import {
   joinedMap,
@@ -16,8 +17,9 @@ import {
   subjectText,
   whyNoPair,
 } from "./motor_findings.js";
-import { createJob, field, table } from "./parts.js";
+import { field } from "./parts.js";
 import { isAnother } from "./selected_axis.js";
+import { table } from "./table.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./motor_findings.js").Subject} Subject */
@@ -25,7 +27,7 @@ import { isAnother } from "./selected_axis.js";
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createMotorTab({ engine, dispatch, now, panel }) {
   const about = element("p", { class: "study-note", "aria-live": "polite" });
-  const ramp = field("Ramp", "steps/s²", 200_000, { least: 1000, most: 1e9 }, () => refresh(now(), true));
+  const ramp = field("Ramp", "steps/s²", 200_000, { min: 1000, max: 1e9 }, () => refresh(now(), true));
   const limitsJob = createJob("Rates");
   const resonanceJob = createJob("Resonance");
   const stepJob = createJob("Supply current of one step");
@@ -64,7 +66,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
   function show(found) {
     Object.assign(findings, found);
     charts.paint();
-    if (findings.pair) say(pair, pairText(findings.pair));
+    if (findings.pair) setText(pair, pairText(findings.pair));
   }
 
   /** @param {Partial<typeof findings>} found */
@@ -87,12 +89,12 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
     body.hidden = ramp.root.hidden = !state.scenario.plant;
     if (!state.scenario.plant) {
       subjectKey = "";
-      return say(about, "There is no motor: choose one in the view Motor, or under Motors and supply in the form.");
+      return setText(about, "There is no motor: choose one in the view Motor, or under Motors and supply in the form.");
     }
     const next = subjectOf(state);
     if (!next) return;
     subject = next;
-    say(about, subjectText(next));
+    setText(about, subjectText(next));
     const key = JSON.stringify([next.json, next.controller, next.channel]);
     if (key !== subjectKey) {
       subjectKey = key;
@@ -105,7 +107,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
 
   function clear() {
     limits.show([]);
-    for (const text of [settled, pair]) say(text, "");
+    for (const text of [settled, pair]) setText(text, "");
     take.disabled = true;
     show(noFindings());
   }
@@ -146,7 +148,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
         return engine.distribute("settling", [[subject.json, subject.controller, subject.channel]], signal);
       },
       ([step]) => {
-        say(settled, settlingText(step, now().result?.summary.clock_hz ?? 1));
+        setText(settled, settlingText(step, now().result?.summary.clock_hz ?? 1));
         take.disabled = step.reached_cycles === null;
         show({ step });
         findPair(subject, step.reached_cycles ?? step.slot_cycles);
@@ -157,7 +159,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
   /** The supply current of the run with simultaneous and with staggered pulses. @param {Subject} subject @param {number} settle_cycles  As it was measured. */
   function findPair(subject, settle_cycles) {
     const why = whyNoPair(now(), subject.channels);
-    say(pair, why);
+    setText(pair, why);
     if (why)
       return pairJob.run(
         async () => null,

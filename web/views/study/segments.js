@@ -1,8 +1,8 @@
 /** The table of segments of the current sine. */
-import { element, say } from "../../dom.js";
+import { element, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, plain, si } from "../../state/number.js";
-import { table } from "./parts.js";
+import { table } from "./table.js";
 
 /** @typedef {{from_deg: Float64Array, to_deg: Float64Array, steps: Float64Array, rate: Float64Array, duration_s: Float64Array, segment_bytes: number, interval_bytes: number}} Segments */
 
@@ -21,12 +21,12 @@ export function createSegments({ engine }) {
     axisKey = key;
     /** @type {Segments | null | undefined} */
     const made = of
-      ? await engine.consider("segments", "sine_segments", of.json, of.controller, of.axis).catch(unlessDropped)
+      ? await engine.compute("segments", "sine_segments", of.json, of.controller, of.axis).catch(unlessDropped)
       : null;
     if (key !== axisKey) return;
     root.hidden = !made;
     if (!made) return;
-    say(
+    setText(
       note,
       `One quarter; the others are symmetric. It takes ${count(made.segment_bytes)} bytes, or ${count(made.interval_bytes)} with one interval per step.`,
     );

@@ -26,7 +26,7 @@ export function motorChoice(engine, change) {
     root.hidden = !wanted;
     if (!wanted || loaded) return;
     loaded = true;
-    const reply = await engine.consider("motors", "sheets").catch(() => null);
+    const reply = await engine.compute("motors", "sheets").catch(() => null);
     // Asked again with the next change of what is shown.
     loaded = reply !== null;
     if (!reply) return;

@@ -2,7 +2,8 @@
 import { button, element, fill } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { counted, short } from "../../state/number.js";
-import { choice, createJob, field, table } from "./parts.js";
+import { createJob } from "./job.js";
+import { choice, field } from "./parts.js";
 import { createSegments } from "./segments.js";
 import { createSineCharts } from "./sine_charts.js";
 import { sensorHarmonics, targetOf } from "./sine_edits.js";
@@ -20,6 +21,7 @@ import {
   progressOf,
   rowOf,
 } from "./sine_sweep.js";
+import { table } from "./table.js";
 import { createVertices } from "./vertices.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -27,11 +29,11 @@ import { createVertices } from "./vertices.js";
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createSine({ engine, samples, dispatch, now, panel }) {
-  const from = field("d1 from", "", 0.002, { least: 1e-5, most: 1 }, sweep);
-  const to = field("to", "", 0.06, { least: 1e-5, most: 1 }, sweep);
-  const points = field("points", "", 500, { least: 2, most: 20000, integer: true }, sweep);
+  const from = field("d1 from", "", 0.002, { min: 1e-5, max: 1 }, sweep);
+  const to = field("to", "", 0.06, { min: 1e-5, max: 1 }, sweep);
+  const points = field("points", "", 500, { min: 2, max: 20000, integer: true }, sweep);
   // A setting of the experiment, so that these numbers agree with the spectrum.
-  const order = field("harmonics to", "", MIN_ORDER, { least: MIN_ORDER, most: MAX_ORDER, integer: true }, () =>
+  const order = field("harmonics to", "", MIN_ORDER, { min: MIN_ORDER, max: MAX_ORDER, integer: true }, () =>
     dispatch({ type: "edit", path: "analysis.max_harmonic", value: order.value() }),
   );
   const quantity = choice(
@@ -184,7 +186,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     if (key === ownKey) return;
     ownKey = key;
     const question = [d1, d1, 1, order.value(), sensor, 0, 1];
-    const found = d1 === null ? null : await engine.consider("sine row", "sine_rows", ...question).catch(unlessDropped);
+    const found = d1 === null ? null : await engine.compute("sine row", "sine_rows", ...question).catch(unlessDropped);
     if (key !== ownKey) return;
     own = rowOf(found, 0);
     mark();

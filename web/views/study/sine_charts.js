@@ -1,6 +1,6 @@
 /** The charts of the tab Sine: THD and Euclidean distance over d1, with the rows that are pointed at, in use and best. */
-import { element, fill, say } from "../../dom.js";
-import { listen } from "../../shell/commands.js";
+import { element, fill, setText } from "../../dom.js";
+import { registerCommands } from "../../shell/commands.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
 import { captionOf, indexAt, movedBy, rowOf, valueText, whyNoChart } from "./sine_sweep.js";
 
@@ -46,7 +46,7 @@ export function createSineCharts({ shown, point, take }) {
     take();
   });
   const move = (/** @type {number} */ by) => point(movedBy(shown().rows, shown().at, by));
-  listen(root, "Sine: figure 4", [
+  registerCommands(root, "Sine: figure 4", [
     { keys: ["ArrowRight", "ArrowUp"], text: "next d1", run: () => move(1) },
     { keys: ["ArrowLeft", "ArrowDown"], text: "previous d1", run: () => move(-1) },
     { keys: ["PageUp"], text: "twenty forward", run: () => move(20) },
@@ -68,7 +68,7 @@ export function createSineCharts({ shown, point, take }) {
     fill(thdCaption, element("span", {}, captionOf(quantity, sensor, order)));
     const why = whyNoChart(rows, quantity, sensor);
     [thdCanvas.hidden, noThd.hidden] = [why !== "", why === ""];
-    say(noThd, why);
+    setText(noThd, why);
     if (rows && rows.d1.length > 1) {
       if (why === "")
         line(

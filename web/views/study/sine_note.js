@@ -1,5 +1,5 @@
 /** The line of the tab Sine that reports its edits of the scenario, and offers a sine where the axis has none. */
-import { element, fill, say } from "../../dom.js";
+import { element, fill, setText } from "../../dom.js";
 import { get } from "../../state/paths.js";
 import { addedSine, deviationEdit, targetOf, vertexEdit, whyNoAxis } from "./sine_edits.js";
 import { rounded } from "./sine_sweep.js";
@@ -14,14 +14,14 @@ export function createSineNote({ samples, dispatch, now }) {
   function apply({ path, value, message }) {
     described = { path, json: JSON.stringify(value) };
     dispatch({ type: "edit", path, value });
-    say(root, message);
+    setText(root, message);
   }
 
   /** Puts a d1 into the scenario. @param {number} d1 */
   function put(d1) {
     const { axis, move } = targetOf(now());
     described = null;
-    if (!axis) return say(root, whyNoAxis(now()));
+    if (!axis) return setText(root, whyNoAxis(now()));
     if (move >= 0) return apply(deviationEdit(axis, move, d1));
     const press = element("button", { type: "button" }, `Add one with d1 = ${rounded(d1)}`);
     press.addEventListener("click", () => add(d1));
@@ -40,7 +40,7 @@ export function createSineNote({ samples, dispatch, now }) {
   function putMove(make) {
     described = null;
     const edit = vertexEdit(targetOf(now()), samples.moves, make);
-    if (typeof edit === "string") return say(root, edit);
+    if (typeof edit === "string") return setText(root, edit);
     return apply(edit);
   }
 
@@ -48,7 +48,7 @@ export function createSineNote({ samples, dispatch, now }) {
   function render({ scenario }) {
     if (!described || JSON.stringify(get(scenario, described.path)) === described.json) return;
     described = null;
-    say(root, "");
+    setText(root, "");
   }
   return { root, put, putMove, render };
 }

@@ -6,9 +6,9 @@
  *     page     the engine, the state's `now` and `dispatch`, `samples` of all moves, and `panel`, the element that the tab fills
  *     render   (state, before) as any view's; `before` is the state that this tab was last drawn of, none at first
  */
-import { byId, element, fill, options, style } from "../../dom.js";
-import { listen } from "../../shell/commands.js";
-import { arrows, choose } from "../../shell/tabs.js";
+import { byId, element, fill, loadStyle, setOptions } from "../../dom.js";
+import { registerCommands } from "../../shell/commands.js";
+import { addTabKeys, markTab } from "../../shell/tabs.js";
 import { STUDIES } from "../../shell/view_part.js";
 import { selected } from "../../state/queries.js";
 import { place } from "./place.js";
@@ -55,7 +55,7 @@ export function createStudy(page) {
     };
   });
   byId("study-tabs").append(...all.map(({ tab }) => tab));
-  arrows(all.map(({ tab }) => tab));
+  addTabKeys(all.map(({ tab }) => tab));
 
   const axes = /** @type {HTMLSelectElement} */ (byId("study-axis"));
   axes.addEventListener("change", () => dispatch({ type: "axis", axis: Number(axes.value) }));
@@ -70,7 +70,7 @@ export function createStudy(page) {
   byId("study").addEventListener("click", () => toggle());
   byId("study-close").addEventListener("click", () => toggle(false));
   const key = { keys: ["F2"], text: "open or close the study", run: () => toggle() };
-  listen(view, "Study", [
+  registerCommands(view, "Study", [
     key,
     {
       keys: ["Escape"],
@@ -78,7 +78,7 @@ export function createStudy(page) {
       run: ({ target }) => (target instanceof HTMLInputElement ? false : toggle(false)),
     },
   ]);
-  listen(document, "Study", [key]);
+  registerCommands(document, "Study", [key]);
 
   /** @type {typeof import("./tabs.js").TABS | null} */
   let tabs = null;
@@ -86,7 +86,7 @@ export function createStudy(page) {
   let loading = null;
   /** Loads the tabs once, and draws the open one. @param {HTMLElement} panel */
   async function load(panel) {
-    loading ??= Promise.all([import("./tabs.js"), style("study")]).then(([{ TABS }]) => {
+    loading ??= Promise.all([import("./tabs.js"), loadStyle("study")]).then(([{ TABS }]) => {
       tabs = TABS;
     });
     try {
@@ -125,13 +125,13 @@ export function createStudy(page) {
     wasOpened ||= open;
     byId("study").setAttribute("aria-pressed", String(open));
     for (const { name, tab, panel } of all) {
-      choose(tab, name === state.study);
+      markTab(tab, name === state.study);
       panel.hidden = name !== state.study;
     }
     const each = all.find(({ name }) => name === state.study);
     if (!open || !each) return undefined;
     const channels = selected(state)?.channels ?? 1;
-    options(
+    setOptions(
       axes,
       Array.from({ length: channels }, (_, axis) => [String(axis), String(axis)]),
       String(state.axis),

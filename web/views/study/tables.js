@@ -1,9 +1,12 @@
 /** The tab Tables of the study: step tables of the selected axis or of the visible steps, with their size and error. */
-import { element, fill, say } from "../../dom.js";
+import { element, fill, setText } from "../../dom.js";
 import { save } from "../../shell/save.js";
+import { errorMessage } from "../../state/error_message.js";
 import { count, counted, plain, pretty, short, si } from "../../state/number.js";
-import { createJob, field, table } from "./parts.js";
+import { createJob } from "./job.js";
+import { field } from "./parts.js";
 import { isAnother } from "./selected_axis.js";
+import { table } from "./table.js";
 import { choice, FORMS, files, LANGUAGES, tabled, tableRequest } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -15,7 +18,7 @@ const ROWS = Object.keys(FORMS).flatMap((form) => Object.keys(WIDTHS).map((width
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createTables({ engine, now, panel }) {
-  const error = field("Max error of compressed list", "µs", choice.us, { least: 0, most: 1e6 }, () => refresh(now()));
+  const error = field("Max error of compressed list", "µs", choice.us, { min: 0, max: 1e6 }, () => refresh(now()));
   const job = createJob("Tables");
   const about = element("p", { class: "study-note" });
   const note = element("p", { class: "study-note" });
@@ -57,7 +60,7 @@ export function createTables({ engine, now, panel }) {
     if (!of || typeof of === "string") return fill(saves);
     const none =
       forms[ROWS.findIndex(({ form, widths }) => form === choice.form && widths === choice.widths)]?.why !== null;
-    say(status, "");
+    setText(status, "");
     fill(
       saves,
       element("span", {}, none ? "" : `Save ${FORMS[choice.form].toLowerCase()}, ${choice.widths}, as`),
@@ -70,12 +73,12 @@ export function createTables({ engine, now, panel }) {
               LANGUAGES[language][0],
             );
             press.addEventListener("click", async () => {
-              say(status, `Writing ${name}…`);
+              setText(status, `Writing ${name}…`);
               try {
                 save(name, type, await make());
-                say(status, `Saved ${name}.`);
+                setText(status, `Saved ${name}.`);
               } catch (failed) {
-                say(status, `No ${name}: ${failed instanceof Error ? failed.message : failed}`);
+                setText(status, `No ${name}: ${errorMessage(failed)}`);
               }
             });
             return press;
@@ -132,7 +135,7 @@ export function createTables({ engine, now, panel }) {
       cell.className = "why";
     });
     const own = forms.find(({ document_bytes }) => document_bytes !== null);
-    say(
+    setText(
       note,
       `${best < 0 ? "" : `Fewest bytes (bold): ${FORMS[ROWS[best].form].toLowerCase()}, ${ROWS[best].widths}. `}The compressed list searches for the longest entry; the exact list only continues an entry while it fits, so it can be longer even for error 0. One interval of 4 bytes per step would take ${count(4 * steps)} bytes.${own ? " In parentheses: bytes of the table in the paper." : ""} Every list has all steps.`,
     );
@@ -147,7 +150,7 @@ export function createTables({ engine, now, panel }) {
     if (of === "") return;
     if (typeof of === "string") {
       key = "";
-      say(about, of);
+      setText(about, of);
       for (const each of [list.root, note, saves]) each.hidden = true;
       return;
     }
@@ -169,7 +172,7 @@ export function createTables({ engine, now, panel }) {
         forms = made;
         for (const each of [list.root, note, saves]) each.hidden = false;
         const derived = now().derived?.controllers[of.controller]?.axes[of.axis];
-        say(
+        setText(
           about,
           `${of.run === null ? "Axis" : "Channel"} ${of.axis}: ${counted(made[0].steps, "step")}${of.run === null ? "" : ", as shown in the views; there is no plan"}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`,
         );

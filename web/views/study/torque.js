@@ -1,9 +1,10 @@
 /** The tab Torque: available and needed torque, and ramps with enough torque (see study.js). */
-import { button, element, fill, say } from "../../dom.js";
+import { button, element, fill, setText } from "../../dom.js";
 import { get } from "../../state/paths.js";
-import { createJob, table } from "./parts.js";
+import { createJob } from "./job.js";
 import { isAnother, selectedAxis } from "./selected_axis.js";
 import { motorChoice, selectedSteps } from "./selected_steps.js";
+import { table } from "./table.js";
 import { createTorqueChart } from "./torque_chart.js";
 import { modelNote, motorRows, rampRows, shortageRows, shortageText, stepsText } from "./torque_report.js";
 
@@ -53,13 +54,13 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     const { report } = found;
     facts.show(motorRows(report));
     const shortage = shortageText(report);
-    say(verdict, shortage || "Enough torque throughout.");
+    setText(verdict, shortage || "Enough torque throughout.");
     verdict.classList.toggle("error", shortage !== "");
     shortages.root.hidden = report.total === 0;
     shortages.show(shortageRows(report));
     rampsTitle.hidden = ramps.root.hidden = report.ramps.length === 0;
     ramps.show(rampRows(report));
-    say(note, modelNote(report));
+    setText(note, modelNote(report));
     chart.paint();
   }
 
@@ -83,13 +84,13 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     if (typeof of === "string") {
       subjectKey = "";
       body.hidden = true;
-      return say(about, of);
+      return setText(about, of);
     }
     const next = JSON.stringify([of.json, of.controller, of.axis]);
     if (next === subjectKey) return;
     subjectKey = next;
     job.run(
-      () => engine.consider("torque", "torque", of.json, of.controller, of.axis),
+      () => engine.compute("torque", "torque", of.json, of.controller, of.axis),
       (/** @type {Torque | undefined} */ found) => {
         torque = null;
         body.hidden = !found;
@@ -99,7 +100,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
             `Axis ${of.axis} has no motor. Add one in the form, under the mechanics of the axis. `,
             addMotor(),
           );
-        say(about, `Axis ${of.axis}: available torque and torque needed by the plan. The form has the motor data.`);
+        setText(about, `Axis ${of.axis}: available torque and torque needed by the plan. The form has the motor data.`);
         return show(found);
       },
     );
@@ -117,19 +118,19 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
     subjectKey = next;
     if (!state.scenario.plant && named === "") {
       body.hidden = true;
-      say(about, "There is no motor: choose one for these steps, or simulate one in the view Motor.");
+      setText(about, "There is no motor: choose one for these steps, or simulate one in the view Motor.");
       return;
     }
     job.run(
       async () => {
         const run = await engine.request("records_of", channel);
-        return engine.consider("torque", "torque_of_steps", json, controller, channel, run, named);
+        return engine.compute("torque", "torque_of_steps", json, controller, channel, run, named);
       },
       (/** @type {Torque | undefined} */ found) => {
         torque = null;
         body.hidden = !found;
         if (!found) return;
-        say(about, stepsText(channel, named, found.report));
+        setText(about, stepsText(channel, named, found.report));
         show(found);
       },
     );

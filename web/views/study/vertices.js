@@ -1,8 +1,10 @@
 /** The best vertices for a number of segments, and the move through them. */
 import { button, element, fill } from "../../dom.js";
-import { mostOf } from "../../form/schema.js";
+import { maxLengthOf } from "../../form/schema.js";
 import { count, counted, short } from "../../state/number.js";
-import { createJob, field, table } from "./parts.js";
+import { createJob } from "./job.js";
+import { field } from "./parts.js";
+import { table } from "./table.js";
 
 /** @typedef {{angle_deg: Float64Array, height: Float64Array, thd: number}} Vertices  Of a quarter, from the extreme to the middle. */
 /** @typedef {{amplitude: {[unit: string]: number}, period_s: number, periods: number}} Sine  As a scenario has it. */
@@ -15,7 +17,7 @@ const DIGITS = 12;
  *   The highest harmonic that counts, and who puts a move into the scenario in place of its sine.
  */
 export function createVertices({ engine, order, take }) {
-  const segments = field("segments per quarter", "", 6, { least: 1, most: 32, integer: true }, find);
+  const segments = field("segments per quarter", "", 6, { min: 1, max: 32, integer: true }, find);
   const job = createJob("Vertices");
   const note = element("p", { class: "study-note", id: "sine-vertices" });
   const list = table("Best vertices", ["vertex", "#on the curve", "#height", "#free", "#height"]);
@@ -67,7 +69,7 @@ export function createVertices({ engine, order, take }) {
 /** The move through the vertices, all periods of it; why not, where it would be too long. @param {Vertices} vertices @param {Sine} sine */
 function through({ angle_deg, height }, { amplitude, period_s, periods }) {
   const [[unit, size]] = Object.entries(amplitude);
-  const most = mostOf("Points", "points");
+  const most = maxLengthOf("Points", "points");
   const quarter = angle_deg.length - 1;
   if (4 * quarter * periods + 1 > most)
     return `${counted(periods, "period")} of ${count(4 * quarter)} vertices exceed the ${count(most)} points of a move; use at most ${count(Math.floor((most - 1) / (4 * quarter)))} periods.`;
