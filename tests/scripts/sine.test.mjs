@@ -96,7 +96,7 @@ test("the ends of the range are recognized", () => {
 test("cells and texts show a missing row and a missing sensor", () => {
   assert.deepEqual(cellsOf("the scenario", null, "none"), ["the scenario", "none", "", "", "", "", "", ""]);
   assert.deepEqual(cellsOf("x", rowOf(rows, 0), ""), ["x", "0.01", "8", "5 %", "10 %", "20 %", "–", "1"]);
-  assert.match(captionOf("filtered", 5, 7), /filtered by a sensor of 5 harmonics, against d1, harmonics 2 to 7/);
+  assert.match(captionOf("filtered", 5, 7), /filtered by a sensor of 5 harmonics over d1, harmonics 2 to 7/);
   assert.equal(whyNoChart(rows, "position", undefined), "");
   assert.match(whyNoChart(rows, "filtered", undefined), /enter a sensor bandwidth/);
   assert.match(whyNoChart(rows, "filtered", 5), /has not run/);

@@ -86,14 +86,17 @@ test("the motor of the study is that of the selected channel, if its controller 
   assert.equal(motor.subjectOf({ ...state, result: { controller: 2 } }), null);
 });
 
-test("limits name the rate of the largest swing and say when it is the map's edge", () => {
-  const found = { ...motor.noFindings(), start: 1234.5, swing: [1, 3, 2], loses: [0, 1, 1] };
+test("limits name the rate of the maximum oscillation and say when it is the map's edge", () => {
+  const found = { ...motor.noFindings(), start: 1234.5, oscillation: [1, 3, 2], loses: [0, 1, 1] };
   const rows = motor.limitRows(found);
   assert.deepEqual(rows[0][1], `1${THIN}234 steps/s`);
   assert.deepEqual(rows[1][1], "below 500 steps/s");
-  assert.deepEqual(rows[2], ["Largest oscillation at", "24 full steps/s"]);
+  assert.deepEqual(rows[2], ["Maximum oscillation at", "24 full steps/s"]);
   assert.equal(rows[4][1], "2 of 3");
-  assert.equal(motor.limitRows({ ...found, swing: [3, 2, 1] })[2][0], "Largest oscillation at the edge of the map");
+  assert.equal(
+    motor.limitRows({ ...found, oscillation: [3, 2, 1] })[2][0],
+    "Maximum oscillation at the edge of the map",
+  );
   assert.equal(motor.limitRows(motor.noFindings()).length, 2);
 });
 
@@ -120,7 +123,7 @@ test("pulses that are staggered already keep the scenario's settling time", () =
 test("a run that cannot be compared says why", () => {
   const state = { validation: { cost: { over_budget: true } }, approved: -1, revision: 0, scenario: { source: {} } };
   assert.match(motor.whyNoPair(state, 1), /one motor/);
-  assert.match(motor.whyNoPair(state, 2), /start it first/);
+  assert.match(motor.whyNoPair(state, 2), /start it to compare/);
   assert.equal(motor.whyNoPair({ ...state, approved: 0 }, 2), "");
   const supply = (above_a, below_a) => ({ above_a, below_a });
   assert.match(motor.pairText([supply(0.4, 0.2), supply(0.1, 0.2)]), /, 2 times less\.$/);

@@ -496,5 +496,5 @@ fn a_motor_of_the_list_takes_the_place_of_the_scenarios() {
     assert!((rate - 34_700.0).abs() < 400.0, "{rate}");
     assert!(usual.start_stop(0, 1).is_err() && ValidatedScenario::new("{}").start_stop(0, 0).is_err());
     let map = sure(usual.resonance(0, 0, 100.0, 50.0, 3));
-    assert_eq!(numbers(&map, "swing").len(), 3);
+    assert_eq!(numbers(&map, "oscillation").len(), 3);
 }

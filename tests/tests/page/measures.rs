@@ -69,7 +69,7 @@ fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
             .await?;
         let all = [found.steps, found.ticks, found.pulses];
         let rows = [
-            ("r.m.s. deviation, steps", all.map(|pair| pair.rms_steps)),
+            ("RMS deviation, steps", all.map(|pair| pair.rms_steps)),
             ("area between, steps·s", all.map(|pair| pair.area_steps_s)),
             ("Euclidean distance, steps", all.map(|pair| pair.euclidean_steps)),
             ("1 − correlation", all.map(|pair| pair.uncorrelated.expect("both move"))),
@@ -80,13 +80,13 @@ fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
             ensure!(cells.len() == 4 && cells[3].len() > 10, "{name}: {cells:?}");
             cells.iter().zip(wanted).try_for_each(|(text, wanted)| close(text, wanted))?;
         }
-        let errors = cells(&page, "Steps and ticks", "largest time error", 0).await?;
+        let errors = cells(&page, "Steps and ticks", "maximum time error", 0).await?;
         close(&errors[0], found.step_errors.largest_s)?;
         close(&errors[1], found.tick_errors.largest_s)?;
         assert_eq!(errors[2], "", "both together have no instants of their own");
         let late = cells(&page, "Duration", "delay of the last pulse", 0).await?;
         close(&late[0], found.duration.end_error_s.expect("there are pulses"))?;
-        let start_stop = cells(&page, "Peaks of the ideal curve", "start-stop rate", 0).await?;
+        let start_stop = cells(&page, "Maxima of the ideal curve", "start-stop rate", 0).await?;
         ensure!(
             (start_stop[0].replace(" steps/s", "").parse::<f64>()? - found.peaks.start_stop_steps_s).abs()
                 <= 0.5,
@@ -157,7 +157,7 @@ fn steps_without_a_motion_are_measured_by_themselves_as_the_core_has_them() -> R
         // They go to and fro evenly, so what is distorted is known of the pulses alone.
         let distortion = cells(&page, "Distortion", "speed", 0).await?;
         ensure!(distortion[0] == "–" && distortion[1].ends_with('%'), "{distortion:?}");
-        for table in ["Steps and ticks", "Duration", "Peaks of the ideal curve"] {
+        for table in ["Steps and ticks", "Duration", "Maxima of the ideal curve"] {
             ensure!(!page.visible(&format!("table[aria-label='{table}']")).await?, "{table}");
         }
         page.picture("measures-of-steps").await?;

@@ -317,7 +317,12 @@ async fn tables_are_the_cores(page: &Session, known: &Known, error_us: u64) -> R
         [("Exact list", "exact"), ("Table of the paper", "document"), ("Compressed", "compressed")]
     {
         for format in EntryFormat::ALL {
-            let shown = cells(page, "Stored forms", &format!("{name} {}", format.name)).await?;
+            let entry = match format.name {
+                "q16" => "20 bytes, 1/65536 cycle",
+                "q8" => "8 bytes, 1/256 cycle",
+                _ => "8 bytes, whole cycles",
+            };
+            let shown = cells(page, "Stored forms", &format!("{name} {entry}")).await?;
             let Ok(table) = native(known, form, format, error_us) else {
                 let why = cells(page, "Stored forms", name).await?;
                 ensure!(why.len() == 3 && why[2].len() > 20, "{why:?}");
@@ -347,7 +352,7 @@ fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
         page.until(made).await?;
         tables_are_the_cores(&page, &known, 25).await?;
         let coarse = native(&known, "compressed", EntryFormat::Q16, 100)?.entries.len();
-        fill(&page, "Max error", "100 us").await?;
+        fill(&page, "Maximum error", "100 us").await?;
         page.until(&format!(
             "[...document.querySelectorAll('#study-tables tr')].some((row) => row.innerText.includes('Compressed') && row.cells[2].textContent === '{coarse}')"
         ))

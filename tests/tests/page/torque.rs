@@ -116,7 +116,7 @@ fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants(
             ))
             .await
         };
-        says("There is no motor: choose one").await?;
+        says("There is no motor: select one").await?;
         page.until("document.querySelectorAll('#study-torque select option').length > 5").await?;
         page.choose("#study-torque select", "song-2021").await?;
         // A driver's choice is a change, and no input as a user's is.
@@ -128,7 +128,7 @@ fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants(
         let shown = async || {
             let facts = cells(&page, "The motor").await?;
             let of = |name: &str| facts.iter().find(|row| row[0] == name).map(|row| row[1].clone());
-            anyhow::Ok((of("Smallest margin"), of("Maximum jump of speed")))
+            anyhow::Ok((of("Minimum margin"), of("Maximum jump of speed")))
         };
         let least = demand.least.expect("it moves").margin_mn_m();
         let expected = (Some(least), demand.jump);

@@ -108,7 +108,7 @@ impl ValidatedScenario {
         Ok(result)
     }
 
-    /// Oscillation at each rate in full steps/s: `{swing, loses}`; `loses` is 1 if it loses steps.
+    /// Oscillation at each rate in full steps/s: `{oscillation, loses}`; `loses` is 1 if it loses steps.
     ///
     /// # Errors
     /// If the scenario has problems, or no such motor.
@@ -126,7 +126,7 @@ impl ValidatedScenario {
         let found: Vec<_> =
             rates.map(|rate| resonance(&setup, rate)).collect::<Result<_, _>>().map_err(refused)?;
         let result = Object::new();
-        numbers(&result, "swing", &found.iter().map(|one| one.peak_to_peak).collect::<Vec<_>>());
+        numbers(&result, "oscillation", &found.iter().map(|one| one.peak_to_peak).collect::<Vec<_>>());
         numbers(
             &result,
             "loses",

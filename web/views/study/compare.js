@@ -37,9 +37,9 @@ export function createCompare({ engine, dispatch, now, panel }) {
   );
   const list = table("Kinds of motion", [
     "motion",
-    "#peak rate, steps/s",
-    "#peak acceleration, steps/s²",
-    "#peak jerk, steps/s³",
+    "#maximum rate, steps/s",
+    "#maximum acceleration, steps/s²",
+    "#maximum jerk, steps/s³",
     "#torque",
     "#time error",
     "#last step",
@@ -66,15 +66,15 @@ export function createCompare({ engine, dispatch, now, panel }) {
   let followsRamp = true;
   let move = 0;
   let subjectKey = "";
-  /** Number of the last question; answers to older ones are dropped. */
-  let question = 0;
-  /** Axis and move of the rows: a row is taken into this move only. */
+  /** Number of the last request; replies to older ones are dropped. */
+  let request = 0;
+  /** Axis and move of the rows: the only move that their buttons replace. */
   let rowsOf = "";
 
   /** @param {State} state */
   async function refresh(state) {
     const axis = selectedAxis(state);
-    const own = ++question;
+    const number = ++request;
     // Rows of another axis must not be put into this one.
     if (!rowsOf.startsWith(`${axisKey(state)} `)) clear();
     disableButtons();
@@ -97,10 +97,10 @@ export function createCompare({ engine, dispatch, now, panel }) {
     all.hidden = subject.steps === 0;
     setText(about, aboutText(subject, axis.axis));
     if (subject.steps === 0) return undefined;
-    const request = [axis.json, axis.controller, axis.axis, move, ramp.value(), POINTS];
-    const found = await engine.compute("compare", "compare", ...request).catch(unlessDropped);
-    if (!found || own !== question) return undefined;
-    rows = found;
+    const args = [axis.json, axis.controller, axis.axis, move, ramp.value(), POINTS];
+    const costs = await engine.compute("compare", "compare", ...args).catch(unlessDropped);
+    if (!costs || number !== request) return undefined;
+    rows = costs;
     rowsOf = `${axisKey(state)} ${move}`;
     // A ramp that no kind accepts is an error of its field, not of every row.
     const why = whyRampRefused(rows);
@@ -125,7 +125,7 @@ export function createCompare({ engine, dispatch, now, panel }) {
     charts.clear();
   }
 
-  /** Nothing can be taken before the reply is there; the focus stays in its row. */
+  /** Until the reply arrives no row can be used; the focus stays in its row. */
   function disableButtons() {
     for (const press of list.body.querySelectorAll("button")) {
       if (press === document.activeElement) focusRow(press.closest("tr"));
@@ -133,11 +133,11 @@ export function createCompare({ engine, dispatch, now, panel }) {
     }
   }
 
-  /** Puts a motion into the scenario as it is now. @param {{[kind: string]: any}} made */
-  function take(made) {
+  /** Replaces the move by a motion of the table. @param {{[kind: string]: any}} motion */
+  function replaceMove(motion) {
     const axis = selectedAxis(now());
     if (!axis || typeof axis === "string" || rowsOf !== `${axisKey(now())} ${move}` || !axis.moves[move]) return;
-    const value = replacement(made, axis.moves[move]);
+    const value = replacement(motion, axis.moves[move]);
     // The ramp of the comparison stays.
     subjectKey = JSON.stringify([axis.path, move, value]);
     followsRamp = false;
@@ -154,7 +154,9 @@ export function createCompare({ engine, dispatch, now, panel }) {
         const cells = cellsOf(cost, duration_s).map(({ text, title, mark }) =>
           title || mark ? element("span", { ...(title ? { title } : {}), class: mark ?? "" }, text) : text,
         );
-        const press = isSame(cost.move, inUse) ? "in use" : button("Use", `Use: ${cost.name}`, () => take(cost.move));
+        const press = isSame(cost.move, inUse)
+          ? "in use"
+          : button("Use", `Use: ${cost.name}`, () => replaceMove(cost.move));
         return [name, ...cells, press];
       }),
     );

@@ -1,11 +1,11 @@
-/** The charts of the tab Compare: all speeds in one, each acceleration in one of its own, and the keys of their lines. */
+/** The charts of the tab Compare: one for all speeds, one for each acceleration, and the legend of their lines. */
 import { element, setText } from "../../dom.js";
 import { cleared, color, draw, watch } from "../../time/plot.js";
 import { isBounded, POINTS, rangeOf } from "./compare_costs.js";
 
 /** @typedef {import("./compare_costs.js").Cost} Cost */
 
-/** In the order of the core's rows: color and dash, so that lines of one color differ. @type {[string, number][]} */
+/** Color and dash of each row of the core; lines of one color have different dashes. @type {[string, number][]} */
 const LOOKS = [
   ["--actual", 0],
   ["--ideal", 2],
@@ -23,7 +23,7 @@ const LOOKS = [
 const GUTTER = 68;
 const SMALL_GUTTER = 44;
 
-/** @param {() => {rows: Cost[], duration_s: number}} shown @param {() => Iterable<HTMLCanvasElement>} keys  The keys in the table, in the order of the rows. */
+/** @param {() => {rows: Cost[], duration_s: number}} shown @param {() => Iterable<HTMLCanvasElement>} keys  The legend in the table, in the order of the rows. */
 export function createCompareCharts(shown, keys) {
   const speeds = element("canvas", {
     id: "compare-speeds",
@@ -79,7 +79,7 @@ export function createCompareCharts(shown, keys) {
   return { speeds, accelerations, paint, clear };
 }
 
-/** A piece of a curve's line. @param {HTMLCanvasElement} canvas @param {number} at */
+/** Draws a piece of a curve's line as its legend. @param {HTMLCanvasElement} canvas @param {number} at */
 function drawKey(canvas, at) {
   const [ink, dash] = LOOKS[at];
   [canvas.width, canvas.height] = [88, 16];

@@ -1,4 +1,4 @@
-/** Kinds of motion for the same steps in the same time, what each costs, and how one is taken into the scenario. */
+/** Kinds of motion for the same steps in the same time: what each costs, and the move that one becomes. */
 import { count, plain, pretty, short, si } from "../../state/number.js";
 import { place } from "./place.js";
 
@@ -15,22 +15,22 @@ import { place } from "./place.js";
 
 /** Points of each curve. */
 export const POINTS = 401;
-/** Two numbers that differ by less than this part are the same: one went through a division. */
-const SAME = 1e-6;
+/** Numbers that differ by less than this ratio are equal: one is the result of a division. */
+const TOLERANCE = 1e-6;
 
-/** A number whose unit stands over it. @param {number} value */
-const bare = (value) => plain(value, "").trim();
+/** A number without its unit, which the column head shows. @param {number} value */
+const withoutUnit = (value) => plain(value, "").trim();
 
-/** The kind of a move, as the core's rows name it. @param {{[kind: string]: any}} move */
+/** The name of a move's kind in the core's rows. @param {{[kind: string]: any}} move */
 export function kindOf(move) {
   const [[kind, { method, shape, interpolation }]] = Object.entries(move);
   return [kind, method, shape, interpolation].filter((part) => part).join(" ");
 }
 
-/** Whether two values are the same but for last digits. @param {any} one @param {any} other @returns {boolean} */
+/** Whether two values are equal except for rounding. @param {any} one @param {any} other @returns {boolean} */
 export function isSame(one, other) {
   if (typeof one === "number" && typeof other === "number")
-    return Math.abs(one - other) <= SAME * Math.max(Math.abs(one), Math.abs(other));
+    return Math.abs(one - other) <= TOLERANCE * Math.max(Math.abs(one), Math.abs(other));
   if (one === null || typeof one !== "object" || typeof other !== "object") return one === other;
   return Object.keys(one).every((key) => key === "distance" || isSame(one[key], other?.[key]));
 }
@@ -41,9 +41,9 @@ export function axisKey(state) {
   return `${controller}:${path}`;
 }
 
-/** @param {State} state @param {SelectedAxis} axis @param {number} wanted @returns {Subject} */
-export function subjectOf(state, { path, controller, axis, moves }, wanted) {
-  const index = Math.min(wanted, moves.length - 1);
+/** @param {State} state @param {SelectedAxis} axis @param {number} selected @returns {Subject} */
+export function subjectOf(state, { path, controller, axis, moves }, selected) {
+  const index = Math.min(selected, moves.length - 1);
   const move = moves[index];
   const { duration_s, ramp_s } = move.cosine ?? move.ramps ?? {};
   const derived = state.derived?.controllers[controller]?.axes[axis]?.moves[index];
@@ -52,7 +52,7 @@ export function subjectOf(state, { path, controller, axis, moves }, wanted) {
   return { index, move, ramp_s, duration_s: duration, steps: derived?.steps ?? 0, key };
 }
 
-/** The ramp that a move is compared with at first. @param {Subject} subject */
+/** The default ramp for a move. @param {Subject} subject */
 export const ownRamp = ({ ramp_s, duration_s }) => ramp_s ?? Number(short(duration_s / 4, 4));
 
 /** @param {Subject} subject @param {number} axis */
@@ -63,7 +63,7 @@ export function aboutText({ index, steps, duration_s, ramp_s }, axis) {
   return `Axis ${axis}, move ${index + 1}: ${count(steps)} steps in ${si(duration_s, "s")}${noRamp}.`;
 }
 
-/** Why the ramp is refused for every kind that takes it unchanged; empty where one of them accepts it. @param {Cost[]} rows */
+/** Why every kind that takes the ramp unchanged refuses it; empty if one accepts it. @param {Cost[]} rows */
 export function whyRampRefused(rows) {
   const { why } = rows[0];
   const isRefused =
@@ -71,20 +71,20 @@ export function whyRampRefused(rows) {
   return isRefused ? pretty(why) : "";
 }
 
-/** A kind of motion with the distance of the move that it replaces. @param {{[kind: string]: any}} made @param {{[kind: string]: any}} before */
-export function replacement(made, before) {
-  const [kind, values] = Object.entries(made)[0];
+/** A kind of motion with the distance of the move that it replaces. @param {{[kind: string]: any}} motion @param {{[kind: string]: any}} before */
+export function replacement(motion, before) {
+  const [kind, values] = Object.entries(motion)[0];
   const { distance } = /** @type {any} */ (Object.values(before)[0]);
   return { [kind]: "distance" in values ? { ...values, distance: distance ?? values.distance } : values };
 }
 
-/** The part of the motor's torque that a motion needs where the margin is smallest. @param {Torque} torque @returns {Cell} */
+/** The share of the motor's torque that a motion needs at its minimum margin. @param {Torque} torque @returns {Cell} */
 function torqueCell({ is_met, least }) {
   if (!least) return { text: "none" };
   const { needed_mn_m: needed, available_mn_m: available, at_s } = least;
-  const part = available > 0 ? `${short((100 * Math.abs(needed)) / available, 3)} %` : "none left";
+  const share = available > 0 ? `${short((100 * Math.abs(needed)) / available, 3)} %` : "none left";
   const title = `${short(Math.abs(needed), 4)} of ${short(available, 4)} mN·m at ${si(at_s, "s")}`;
-  return is_met ? { text: part, title } : { text: `✕ ${part}`, title, mark: "error" };
+  return is_met ? { text: share, title } : { text: `✕ ${share}`, title, mark: "error" };
 }
 
 /** @param {number} by @param {string} unit @returns {Cell} */
@@ -98,22 +98,22 @@ export function cellsOf(
   { speed, jump, acceleration, jerk, acceleration_jump, torque, time_error_s, last_step_s },
   duration_s,
 ) {
-  const errorPart = short((100 * time_error_s) / duration_s, 3);
+  const errorShare = short((100 * time_error_s) / duration_s, 3);
   return [
-    { text: bare(speed) },
-    jump > 0 ? jumpCell(jump, "steps/s") : { text: bare(acceleration) },
+    { text: withoutUnit(speed) },
+    jump > 0 ? jumpCell(jump, "steps/s") : { text: withoutUnit(acceleration) },
     jump > 0
       ? { text: "unbounded" }
       : acceleration_jump > 0
         ? jumpCell(acceleration_jump, "steps/s²")
-        : { text: bare(jerk) },
+        : { text: withoutUnit(jerk) },
     torque ? torqueCell(torque) : { text: "no motor" },
-    { text: Math.abs(time_error_s) <= SAME * duration_s ? "none" : `${si(time_error_s, "s")} (${errorPart} %)` },
+    { text: Math.abs(time_error_s) <= TOLERANCE * duration_s ? "none" : `${si(time_error_s, "s")} (${errorShare} %)` },
     { text: si(last_step_s, "s", 5) },
   ];
 }
 
-/** Where the speed jumps the acceleration has no bound, and no chart. @param {Cost} cost */
+/** Whether a motion has a bounded acceleration, and so a chart: not if its speed jumps. @param {Cost} cost */
 export const isBounded = ({ jump }) => jump === 0;
 
 /** Range of a chart over some rows. @param {Cost[]} rows @param {"at_speed" | "at_acceleration"} quantity */

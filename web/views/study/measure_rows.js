@@ -26,16 +26,16 @@ const percent = (value) => (value === null ? "–" : `${short(100 * value, 5)} %
 /** @param {number | null} value @param {string} name */
 const unit = (value, name) => (value === null ? "–" : plain(value, name));
 
-/** The list of SWorldJournal 2022. @type {[string, (of: Comparison) => string, string][]} */
+/** The measures of SWorldJournal 2022. @type {[string, (of: Comparison) => string, string][]} */
 const COMPARED = [
   [
-    "largest deviation, steps",
+    "maximum deviation, steps",
     (of) => digits(of.largest_steps),
     "Maximum difference between both curves; positive if the second is ahead.",
   ],
   ["at", (of) => si(of.largest_at_s, "s", 5), "Time of the maximum."],
   [
-    "r.m.s. deviation, steps",
+    "RMS deviation, steps",
     (of) => digits(of.rms_steps),
     "Root mean square over time; 1/√12 = 0.2887 for whole steps at a constant rate.",
   ],
@@ -45,19 +45,19 @@ const COMPARED = [
   [
     "Euclidean distance, steps",
     (of) => digits(of.euclidean_steps),
-    "Root of that sum, Ev in SWorldJournal 2022. It grows with the root of the number of points.",
+    "Square root of that sum, Ev in SWorldJournal 2022. It grows with the square root of the number of points.",
   ],
   [
     "correlation",
     (of) => (of.correlation === null ? "–" : short(of.correlation, 7)),
     "1 if both curves are proportional.",
   ],
-  ["1 − correlation", (of) => digits(of.uncorrelated), "The same with more digits."],
+  ["1 − correlation", (of) => digits(of.uncorrelated), "The distance from 1, with more digits."],
 ];
 /** @type {[string, (of: Errors) => string, string][]} */
 const ERRORS = [
   [
-    "largest time error",
+    "maximum time error",
     (of) => seconds(of.largest_s),
     "Maximum time error of a pulse; positive if late. Rounding to cycles adds at most half a cycle.",
   ],
@@ -65,15 +65,15 @@ const ERRORS = [
   [
     "mean time error",
     (of) => seconds(Math.abs(of.mean_s) < 1e-6 * of.rms_s ? 0 : of.mean_s),
-    "Common delay of all pulses.",
+    "Mean delay of all pulses.",
   ],
-  ["r.m.s. time error", (of) => seconds(of.rms_s), "Root mean square of the time errors."],
+  ["RMS time error", (of) => seconds(of.rms_s), "Root mean square of the time errors."],
   [
-    "largest position error, steps",
+    "maximum position error, steps",
     (of) => digits(of.largest_steps),
     "Travel of the ideal motion during the time error of a pulse.",
   ],
-  ["r.m.s. position error, steps", (of) => digits(of.rms_steps), "Root mean square of these errors."],
+  ["RMS position error, steps", (of) => digits(of.rms_steps), "Root mean square of these errors."],
 ];
 /** @type {[string, string, string, string][]} Name, key, unit, meaning. */
 const PEAKS = [
@@ -136,7 +136,7 @@ export function comparedRows({ steps, ticks, pulses, step_errors, tick_errors })
 
 /** @param {Measures} measures */
 export const comparedNote = ({ length_s, pulses }) =>
-  `Over ${si(length_s, "s", 6)}. Ideal → steps: rounding to whole steps and cycles. Steps → pulses: effect of ticks, queue and line. Sums use ${counted(pulses.points, "point")}, all other figures the curves.`;
+  `Over ${si(length_s, "s", 6)}. Ideal → steps: rounding to whole steps and cycles. Steps → actual: effect of ticks, queue and line. Sums use ${counted(pulses.points, "point")}; all other figures use the curves.`;
 
 /** @param {Measures} measures @returns {string[][]} */
 export function durationRows({ duration, counts }) {
@@ -148,7 +148,7 @@ export function durationRows({ duration, counts }) {
     ]),
     ["steps due", count(counts.due), "In both directions."],
     ["actual pulses", count(counts.actual), "Opposite steps in one tick cancel."],
-    ["pulses without a step", count(counts.stray), "Pulses at a position or in a direction without a planned step."],
+    ["pulses without a planned step", count(counts.stray), "No planned step has their position and direction."],
   ];
 }
 
@@ -172,19 +172,23 @@ export const sineNote = ({ quarter }) =>
 export const figureRows = (figures) => FIGURES.map(([name, of, text]) => [name, of(figures), text]);
 
 /**
- * The harmonic distortion of an axis; null where the spectrum is of another axis or of a motion that is not periodic.
+ * The harmonic distortion of an axis; null if the spectrum is of another axis or of a motion that is not periodic.
  * @param {Spectra | null} spectra @param {number} axis @returns {{note: string, rows: string[][]} | null}
  */
 export function distortion(spectra, axis) {
   const { ideal = null, pulses = null } = spectra?.axis === axis ? spectra : {};
   if (!pulses || !(ideal ?? pulses).periodic) return null;
-  // Without a plan there are only the pulses.
+  // Without a plan there is only the actual curve.
   const { order, fundamental_hz } = ideal ?? pulses;
   const both = (
     /** @type {"thd_position" | "thd_speed" | "thd_acceleration" | "thd_acceleration_filtered"} */ name,
   ) => [percent(ideal?.[name] ?? null), percent(pulses[name])];
   const rows = [
-    ["position", ...both("thd_position"), "Root of the sum of squares of harmonics from 2, divided by the first."],
+    [
+      "position",
+      ...both("thd_position"),
+      "Square root of the sum of squares of harmonics from 2, divided by the first.",
+    ],
     ["speed", ...both("thd_speed"), "Harmonic k is weighted with k."],
     [
       "acceleration",
@@ -194,7 +198,7 @@ export function distortion(spectra, axis) {
   ];
   if (pulses.thd_acceleration_filtered !== null)
     rows.push([
-      "acceleration filtered",
+      "filtered acceleration",
       ...both("thd_acceleration_filtered"),
       "After the low-pass filter of the sensor.",
     ]);

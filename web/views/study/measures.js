@@ -21,9 +21,9 @@ import { table } from "./table.js";
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createMeasures({ engine, panel }) {
   const about = element("p", { class: "study-note" });
-  const rest = element("div");
+  const groups = element("div");
   /** @param {string} title @param {string} note @param {string[]} head */
-  const group = (title, note, head) => {
+  const addGroup = (title, note, head) => {
     const list = table(title, ["measure", ...head.map((text) => `#${text}`), "~meaning"]);
     const root = element(
       "section",
@@ -32,18 +32,18 @@ export function createMeasures({ engine, panel }) {
       element("p", { class: "study-note" }, note),
       list.root,
     );
-    rest.append(root);
+    groups.append(root);
     return { root, note: /** @type {Element} */ (root.children[1]), show: list.show };
   };
-  const compared = group("Steps and ticks", "", ["ideal → steps", "steps → pulses", "ideal → pulses"]);
-  const duration = group("Duration", "", ["value"]);
-  const peaks = group("Peaks of the ideal curve", "", ["value"]);
-  const thd = group("Distortion", "", ["ideal", "pulses"]);
-  const sine = group("Sine by segments", "", ["sine → segments"]);
-  const own = group("Steps", "There is no plan, so the steps of the run or the recording are measured alone.", [
+  const compared = addGroup("Steps and ticks", "", ["ideal → steps", "steps → actual", "ideal → actual"]);
+  const duration = addGroup("Duration", "", ["value"]);
+  const peaks = addGroup("Maxima of the ideal curve", "", ["value"]);
+  const thd = addGroup("Distortion", "", ["ideal", "actual"]);
+  const sine = addGroup("Sine by segments", "", ["sine → segments"]);
+  const own = addGroup("Steps", "There is no plan: only the steps of the run or the recording are measured.", [
     "value",
   ]);
-  fill(panel, about, rest);
+  fill(panel, about, groups);
 
   /** @param {import("./measure_rows.js").Measures} measures */
   function show(measures) {
@@ -59,47 +59,47 @@ export function createMeasures({ engine, panel }) {
 
   /** @param {import("../../state/types.js").Spectra | null} spectra @param {number} axis */
   function showDistortion(spectra, axis) {
-    const found = distortion(spectra, axis);
-    thd.root.hidden = !found;
-    if (!found) return;
-    setText(thd.note, found.note);
-    thd.show(found.rows);
+    const measures = distortion(spectra, axis);
+    thd.root.hidden = !measures;
+    if (!measures) return;
+    setText(thd.note, measures.note);
+    thd.show(measures.rows);
   }
 
   /** @param {State} state */
   async function refresh({ result, axis }) {
     if (!result) return;
     const { controller, summary } = result;
-    const [found, spectra, steps] = await Promise.all([
+    const [measures, spectra, steps] = await Promise.all([
       engine.computeForRun("measures", "measures", controller, axis),
       engine.latest("measures-thd", "spectrum"),
       engine.latest("measures-steps", "records_of", axis),
     ])
-      .then(async ([found, spectra, run]) => {
-        // The slot is the measures' own: a newer question ends this one.
+      .then(async ([measures, spectra, run]) => {
+        // Only the measures use this slot: a newer request ends this one.
         const figures =
-          found === null && (await engine.compute("measures", "step_figures", run, axis, summary.clock_hz));
-        return [found, spectra, /** @type {import("./measure_rows.js").Figures | null} */ (figures || null)];
+          measures === null && (await engine.compute("measures", "step_figures", run, axis, summary.clock_hz));
+        return [measures, spectra, /** @type {import("./measure_rows.js").Figures | null} */ (figures || null)];
       })
       .catch((error) => {
         if (!(error instanceof Dropped)) {
-          // Too many steps to be measured, say.
-          rest.hidden = true;
+          // For example, too many steps.
+          groups.hidden = true;
           setText(about, errorMessage(error));
         }
         return [];
       });
-    if (found === undefined) return;
-    rest.hidden = !found && !steps;
+    if (measures === undefined) return;
+    groups.hidden = !measures && !steps;
     own.root.hidden = !steps;
-    for (const { root } of [compared, duration, peaks, sine]) root.hidden = !found;
+    for (const { root } of [compared, duration, peaks, sine]) root.hidden = !measures;
     if (steps) {
       setText(about, `Channel ${axis} of the visible run.`);
       own.show(figureRows(steps));
-    } else if (found) {
+    } else if (measures) {
       setText(about, `Axis ${axis} of the visible run.`);
-      show(found);
-    } else setText(about, `Axis ${axis} has no motion, so there is no curve to compare with.`);
+      show(measures);
+    } else setText(about, `Axis ${axis} has no motion, so there is no curve for a comparison.`);
     showDistortion(spectra, axis);
   }
 

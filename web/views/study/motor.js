@@ -34,10 +34,10 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
   const pairJob = createJob("Supply current of the run");
   const findings = noFindings();
   const charts = createMotorCharts(() => (body.hidden ? null : findings));
-  const limits = table("Motor limits", ["of the motor", "#value"]);
+  const limits = table("Motor limits", ["limit", "#value"]);
   const settled = element("p", { class: "study-note" });
   const pair = element("p", { class: "study-note" });
-  const take = button("Use as settling time", "Use as settling time of the driver bus", takeSettling, true);
+  const useSettling = button("Use as settling time", "Use as settling time of the driver bus", applySettling, true);
   const body = element(
     "div",
     { class: "study-split" },
@@ -50,7 +50,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
       resonanceJob.root,
       charts.step,
       settled,
-      take,
+      useSettling,
       stepJob.root,
       pair,
       pairJob.root,
@@ -58,7 +58,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
   );
   fill(panel, element("div", { class: "study-bar" }, about, ramp.root), body);
   body.hidden = ramp.root.hidden = true;
-  /** The motor of the findings, and as text. @type {Subject | null} */
+  /** The motor of the findings; `subjectKey` identifies it. @type {Subject | null} */
   let subject = null;
   let subjectKey = "";
 
@@ -75,7 +75,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
     limits.show(limitRows(findings));
   }
 
-  function takeSettling() {
+  function applySettling() {
     const edit = settleEdit(findings, subject?.controller ?? 0);
     if (edit) dispatch({ type: "edit", ...edit });
   }
@@ -89,7 +89,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
     body.hidden = ramp.root.hidden = !state.scenario.plant;
     if (!state.scenario.plant) {
       subjectKey = "";
-      return setText(about, "There is no motor: choose one in the view Motor, or under Motors and supply in the form.");
+      return setText(about, "There is no motor: select one in the view Motor, or under Motors and supply in the form.");
     }
     const next = subjectOf(state);
     if (!next) return;
@@ -108,7 +108,7 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
   function clear() {
     limits.show([]);
     for (const text of [settled, pair]) setText(text, "");
-    take.disabled = true;
+    useSettling.disabled = true;
     show(noFindings());
   }
 
@@ -116,10 +116,10 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
   function findLimits({ json, controller, channel }) {
     limitsJob.run(async (signal, report) => {
       report(0, "start-stop and pull-out rate");
-      const one = (/** @type {string} */ method, /** @type {any[]} */ ...args) =>
+      const requestOne = (/** @type {string} */ method, /** @type {any[]} */ ...args) =>
         engine.distribute(method, [[json, controller, channel, ...args]], signal).then(([answer]) => answer);
-      const [start, pull] = await Promise.all([one("start_stop"), one("pull_out", ramp.value())]);
-      const torque = await one("torque_of_motor", 1.1 * Math.max(start ?? 0, pull ?? 0, 1000));
+      const [start, pull] = await Promise.all([requestOne("start_stop"), requestOne("pull_out", ramp.value())]);
+      const torque = await requestOne("torque_of_motor", 1.1 * Math.max(start ?? 0, pull ?? 0, 1000));
       return { start, pull, torque };
     }, showLimits);
   }
@@ -149,14 +149,14 @@ export function createMotorTab({ engine, dispatch, now, panel }) {
       },
       ([step]) => {
         setText(settled, settlingText(step, now().result?.summary.clock_hz ?? 1));
-        take.disabled = step.reached_cycles === null;
+        useSettling.disabled = step.reached_cycles === null;
         show({ step });
         findPair(subject, step.reached_cycles ?? step.slot_cycles);
       },
     );
   }
 
-  /** The supply current of the run with simultaneous and with staggered pulses. @param {Subject} subject @param {number} settle_cycles  As it was measured. */
+  /** The supply current of the run with simultaneous and with staggered pulses. @param {Subject} subject @param {number} settle_cycles  The measured time. */
   function findPair(subject, settle_cycles) {
     const why = whyNoPair(now(), subject.channels);
     setText(pair, why);

@@ -8,8 +8,8 @@ import { extent, MAP, settledLimit } from "./motor_findings.js";
 /** @typedef {ReturnType<typeof chart>} Chart */
 
 const AXIS = { unit: "", prefix: true, label_px: GUTTER };
-/** Maximum swing that the resonance map draws, in full steps. */
-const MAX_SWING = 4;
+/** Maximum oscillation that the resonance map draws, in full steps. */
+const MAX_OSCILLATION = 4;
 
 /** @param {string} text @param {string} label */
 function chart(text, label) {
@@ -39,8 +39,8 @@ const key = (ink, text, dashed = false) => element("span", {}, swatch(ink, dashe
 
 /** @param {() => Findings | null} shown  Null where the charts are not visible. */
 export function createMotorCharts(shown) {
-  const torque = chart("Torque over rate, mN·m over steps/s: ", "Torque over rate");
-  const map = chart("Swing at each rate, full steps over full steps/s: ", "Resonance");
+  const torque = chart("Torque-speed curve, mN·m over steps/s: ", "Torque-speed curve");
+  const map = chart("Oscillation at each rate, full steps over full steps/s: ", "Resonance");
   const step = chart("Supply current of one step at the sensor, A over s: ", "Supply current of one step");
   const pair = chart("Supply current of the run at the sensor, A over s: ", "Supply current of the run");
   for (const { root } of [torque, map, step, pair]) watch(root, paint);
@@ -62,16 +62,16 @@ function paintTorque({ root, canvas, keys }, { torque, start, pull }) {
   if (!torque) return;
   const { rate, available, needed } = torque;
   const needs = needed.filter((value) => value > 0);
-  const most = Math.max(...available, ...needs);
+  const maxTorque = Math.max(...available, ...needs);
   const marks = [
-    ...(start === undefined ? [] : [line("--enable", [start, start], [0, 2 * most], { width: 1.5 })]),
-    ...(pull === undefined ? [] : [line("--error", [pull, pull], [0, 2 * most], { width: 1.5, dash: 4 })]),
+    ...(start === undefined ? [] : [line("--enable", [start, start], [0, 2 * maxTorque], { width: 1.5 })]),
+    ...(pull === undefined ? [] : [line("--error", [pull, pull], [0, 2 * maxTorque], { width: 1.5, dash: 4 })]),
   ];
   const positive = available.map((value) => Math.max(value, 0));
   const needStems = { ...line("--actual", rate, []), opacity: 0.75, shape: { stems: { y: needed, shift: 0 } } };
   draw(canvas, {
     x: { min: 0, max: rate[rate.length - 1], unit: "steps/s", prefix: true, label_px: 20 },
-    y: { ...AXIS, prefix: false, min: 0, max: 1.08 * most },
+    y: { ...AXIS, prefix: false, min: 0, max: 1.08 * maxTorque },
     series: [...(needs.length > 0 ? [needStems] : []), line("--ideal", rate, positive), ...marks],
   });
   fill(
@@ -84,11 +84,11 @@ function paintTorque({ root, canvas, keys }, { torque, start, pull }) {
 }
 
 /** @param {Chart} chart @param {Findings} findings */
-function paintMap({ root, canvas, keys }, { swing, loses }) {
-  root.hidden = swing.length === 0;
-  if (swing.length === 0) return;
-  const x = Float64Array.from(swing, (_, at) => MAP.from + at * MAP.rung);
-  const y = swing.map((value) => Math.min(value, MAX_SWING));
+function paintMap({ root, canvas, keys }, { oscillation, loses }) {
+  root.hidden = oscillation.length === 0;
+  if (oscillation.length === 0) return;
+  const x = Float64Array.from(oscillation, (_, at) => MAP.from + at * MAP.rung);
+  const y = oscillation.map((value) => Math.min(value, MAX_OSCILLATION));
   const lost = y.map((value, at) => (loses[at] ? value : Number.NaN));
   draw(canvas, {
     x: { min: 0, max: MAP.to, unit: "", prefix: false, label_px: 20 },
@@ -98,7 +98,7 @@ function paintMap({ root, canvas, keys }, { swing, loses }) {
       line("--actual", x, y),
     ],
   });
-  fill(keys, key("--actual", "swing, peak to peak, drawn up to 4"), key("--error", "loses steps"));
+  fill(keys, key("--actual", "oscillation, peak to peak, drawn up to 4"), key("--error", "loses steps"));
 }
 
 /** @param {Chart} chart @param {Findings} findings */
@@ -132,5 +132,5 @@ function paintPair({ root, canvas, keys }, { pair }) {
       shape: shapeOf(curve),
     })),
   });
-  fill(keys, key("--ideal", "all at once"), key("--actual", "staggered"));
+  fill(keys, key("--ideal", "simultaneous"), key("--actual", "staggered"));
 }

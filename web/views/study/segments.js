@@ -14,29 +14,29 @@ export function createSegments({ engine }) {
   root.hidden = true;
   let axisKey = "";
 
-  /** @param {import("./selected_axis.js").SelectedAxis | null} of */
-  async function show(of) {
-    const key = of ? `${of.controller} ${of.axis} ${of.json}` : "";
+  /** @param {import("./selected_axis.js").SelectedAxis | null} axis */
+  async function show(axis) {
+    const key = axis ? `${axis.controller} ${axis.axis} ${axis.json}` : "";
     if (key === axisKey) return;
     axisKey = key;
     /** @type {Segments | null | undefined} */
-    const made = of
-      ? await engine.compute("segments", "sine_segments", of.json, of.controller, of.axis).catch(unlessDropped)
+    const segments = axis
+      ? await engine.compute("segments", "sine_segments", axis.json, axis.controller, axis.axis).catch(unlessDropped)
       : null;
     if (key !== axisKey) return;
-    root.hidden = !made;
-    if (!made) return;
+    root.hidden = !segments;
+    if (!segments) return;
     setText(
       note,
-      `One quarter; the others are symmetric. It takes ${count(made.segment_bytes)} bytes, or ${count(made.interval_bytes)} with one interval per step.`,
+      `One quarter; the others are symmetric. It takes ${count(segments.segment_bytes)} bytes, or ${count(segments.interval_bytes)} with one interval per step.`,
     );
     list.show(
-      Array.from(made.steps, (steps, i) => [
-        `${made.from_deg[i].toFixed(3)}°`,
-        `${made.to_deg[i].toFixed(3)}°`,
+      Array.from(segments.steps, (steps, i) => [
+        `${segments.from_deg[i].toFixed(3)}°`,
+        `${segments.to_deg[i].toFixed(3)}°`,
         count(steps),
-        plain(made.rate[i], ""),
-        si(made.duration_s[i], "s"),
+        plain(segments.rate[i], ""),
+        si(segments.duration_s[i], "s"),
       ]),
     );
   }

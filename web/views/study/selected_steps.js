@@ -4,9 +4,9 @@ import { isStale } from "../../state/queries.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
-/** @typedef {{json: string, revision: number, controller: number, channel: number, clock_hz: number}} SelectedSteps  Scenario as text, and a channel of one of its controllers. */
+/** @typedef {{json: string, revision: number, controller: number, channel: number, clock_hz: number}} SelectedSteps  A channel of a controller, with its scenario as JSON. */
 
-/** The channel that the study is about; null where the source is a motion, or until the run of the scenario has come. @param {State} state @returns {SelectedSteps | null} */
+/** The channel of the study; null if the source is a motion, or before the run of the scenario arrives. @param {State} state @returns {SelectedSteps | null} */
 export function selectedSteps(state) {
   const { validation, validated, revision, scenario, result, axis: channel } = state;
   if (!validation || validated !== revision || scenario.source?.motion || !result || isStale(state)) return null;
@@ -14,20 +14,20 @@ export function selectedSteps(state) {
   return { json: validation.scenario, revision, controller, channel, clock_hz: summary.clock_hz };
 }
 
-/** A choice out of the list of motors, which is requested once. @param {Engine} engine @param {() => void} change */
+/** A list of motors, requested once. @param {Engine} engine @param {() => void} change */
 export function motorChoice(engine, change) {
   const select = element("select", {});
   const root = element("label", {}, "Motor ", select);
   let loaded = false;
   root.hidden = true;
   select.addEventListener("change", change);
-  /** @param {boolean} wanted */
-  async function show(wanted) {
-    root.hidden = !wanted;
-    if (!wanted || loaded) return;
+  /** @param {boolean} isShown */
+  async function show(isShown) {
+    root.hidden = !isShown;
+    if (!isShown || loaded) return;
     loaded = true;
     const reply = await engine.compute("motors", "sheets").catch(() => null);
-    // Asked again with the next change of what is shown.
+    // If it failed, the next call requests it again.
     loaded = reply !== null;
     if (!reply) return;
     /** @type {{id: string, name: string}[]} */

@@ -32,7 +32,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   const from = field("d1 from", "", 0.002, { min: 1e-5, max: 1 }, sweep);
   const to = field("to", "", 0.06, { min: 1e-5, max: 1 }, sweep);
   const points = field("points", "", 500, { min: 2, max: 20000, integer: true }, sweep);
-  // A setting of the experiment, so that these numbers agree with the spectrum.
+  // It is a setting of the experiment: the spectrum uses it, too.
   const order = field("harmonics to", "", MIN_ORDER, { min: MIN_ORDER, max: MAX_ORDER, integer: true }, () =>
     dispatch({ type: "edit", path: "analysis.max_harmonic", value: order.value() }),
   );
@@ -43,7 +43,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   );
   const job = createJob("Sweep", () => (rows ? " The charts show the previous sweep." : ""));
   const list = table("Results by d1", [
-    "of",
+    "row",
     "#d1",
     "#segments",
     "#THD position",
@@ -55,17 +55,17 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   ]);
   const note = createSineNote({ samples, dispatch, now });
   const bestList = table("Best d1 of each number of segments", ["segments", "#best d1", "#THD position", "~#Ev", ""]);
-  const vertices = createVertices({ engine, order: order.value, take: note.putMove });
+  const vertices = createVertices({ engine, order: order.value, putMove: note.putMove });
   const quarter = createSegments({ engine });
-  /** The visible rows, as far as they have arrived. @type {import("./sine_sweep.js").Rows | null} */
+  /** The visible rows; null before the first sweep. @type {import("./sine_sweep.js").Rows | null} */
   let rows = null;
   /** @type {Row | null} */
   let best = null;
-  /** Of the scenario's d1. @type {Row | null} */
-  let own = null;
-  let ownKey = "";
-  /** The row that is pointed at. @type {number | null} */
-  let at = null;
+  /** The row of the scenario's d1. @type {Row | null} */
+  let current = null;
+  let currentKey = "";
+  /** The selected row. @type {number | null} */
+  let selected = null;
   /** Harmonics of the rows. */
   let sweptOrder = 0;
   let isSwept = false;
@@ -74,17 +74,17 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   let sensor;
   const charts = createSineCharts({
     shown: () => ({
-      ...{ rows, at, best, own, sensor, order: sweptOrder || order.value() },
+      ...{ rows, selected, best, current, sensor, order: sweptOrder || order.value() },
       quantity: /** @type {import("./sine_sweep.js").Quantity} */ (quantity.value()),
     }),
-    point(index) {
-      if (index === at) return;
-      at = index;
+    select(index) {
+      if (index === selected) return;
+      selected = index;
       mark();
     },
-    take() {
-      const row = rowOf(rows, at);
-      if (row) note.put(row.d1);
+    use() {
+      const row = rowOf(rows, selected);
+      if (row) note.setDeviation(row.d1);
     },
   });
   fill(
@@ -106,7 +106,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
   );
 
   /** @param {Row} row @param {string} name */
-  const useButton = (row, name) => button("Use", `Use: ${name}`, () => note.put(row.d1));
+  const useButton = (row, name) => button("Use", `Use: ${name}`, () => note.setDeviation(row.d1));
 
   /** Sweeps the range, and searches it for the best d1. */
   function sweep() {
@@ -123,9 +123,9 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
           report(part, text);
         };
         report(0, progressOf(0, number).text);
-        // The rows before stay until these are there.
+        // The previous rows stay until these arrive.
         const swept = joined(await engine.distribute("sine_rows", work.rows, signal, progress));
-        [rows, at, best, sweptOrder] = [swept, null, null, highest];
+        [rows, selected, best, sweptOrder] = [swept, null, null, highest];
         paint();
         return joined(await engine.distribute("sine_best", work.best, signal, progress));
       },
@@ -166,29 +166,29 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     ) => [...cellsOf(name, row, none), isUsable && row ? useButton(row, name) : ""];
     list.root.classList.toggle("unfiltered", sensor === undefined);
     list.show([
-      cells("selected", rowOf(rows, at), "–"),
-      cells("current", own, "none", false),
+      cells("selected", rowOf(rows, selected), "–"),
+      cells("current", current, "none", false),
       cells(
-        `best by position${best && rows && isAtEnd(best.d1, rows.d1) ? ": at the end of the range" : ""}`,
+        `best by position${best && rows && isAtEnd(best.d1, rows.d1) ? ": selected the end of the range" : ""}`,
         best,
         "–",
       ),
     ]);
   }
 
-  /** The row of the scenario's own d1. @param {State} state */
-  async function showOwn(state) {
+  /** Shows the row of the scenario's d1. @param {State} state */
+  async function showCurrent(state) {
     const { axis, move } = targetOf(state);
     if (!axis) return;
     quarter.show(move < 0 ? null : axis);
     const d1 = axis.moves[move]?.sine_segments.max_deviation ?? null;
     const key = `${d1} ${order.value()} ${sensor}`;
-    if (key === ownKey) return;
-    ownKey = key;
-    const question = [d1, d1, 1, order.value(), sensor, 0, 1];
-    const found = d1 === null ? null : await engine.compute("sine row", "sine_rows", ...question).catch(unlessDropped);
-    if (key !== ownKey) return;
-    own = rowOf(found, 0);
+    if (key === currentKey) return;
+    currentKey = key;
+    const args = [d1, d1, 1, order.value(), sensor, 0, 1];
+    const found = d1 === null ? null : await engine.compute("sine row", "sine_rows", ...args).catch(unlessDropped);
+    if (key !== currentKey) return;
+    current = rowOf(found, 0);
     mark();
   }
 
@@ -206,7 +206,7 @@ export function createSine({ engine, samples, dispatch, now, panel }) {
     if (!isSwept) vertices.find();
     if (!isSwept || isOtherSensor) sweep();
     if (before?.view !== state.view || before?.study !== state.study) paint();
-    return showOwn(state);
+    return showCurrent(state);
   }
   return { render };
 }

@@ -1,4 +1,4 @@
-/** The charts of the tab Sine: THD and Euclidean distance over d1, with the rows that are pointed at, in use and best. */
+/** The charts of the tab Sine: THD and Euclidean distance over d1, with the selected, the current and the best row. */
 import { element, fill, setText } from "../../dom.js";
 import { registerCommands } from "../../shell/commands.js";
 import { cleared, color, draw, fit, watch } from "../../time/plot.js";
@@ -7,19 +7,19 @@ import { captionOf, indexAt, movedBy, rowOf, valueText, whyNoChart } from "./sin
 /** @typedef {import("./sine_sweep.js").Rows} Rows */
 /** @typedef {import("./sine_sweep.js").Row} Row */
 /** @typedef {import("./sine_sweep.js").Quantity} Quantity */
-/** @typedef {{rows: Rows | null, at: number | null, best: Row | null, own: Row | null, quantity: Quantity, sensor: number | undefined, order: number}} Shown */
+/** @typedef {{rows: Rows | null, selected: number | null, best: Row | null, current: Row | null, quantity: Quantity, sensor: number | undefined, order: number}} Shown */
 
 const GUTTER = 58;
 
-/** @param {{shown: () => Shown, point: (index: number | null) => void, take: () => void}} page */
-export function createSineCharts({ shown, point, take }) {
-  const thdCanvas = element("canvas", { role: "img", "aria-label": "THD against d1" });
-  const distanceCanvas = element("canvas", { role: "img", "aria-label": "Euclidean distance against d1" });
+/** @param {{shown: () => Shown, select: (index: number | null) => void, use: () => void}} page */
+export function createSineCharts({ shown, select, use }) {
+  const thdCanvas = element("canvas", { role: "img", "aria-label": "THD over d1" });
+  const distanceCanvas = element("canvas", { role: "img", "aria-label": "Euclidean distance over d1" });
   const overlay = element("canvas", { class: "overlay", "aria-hidden": "true" });
   const noThd = element("p", { class: "study-note no-chart" });
   noThd.hidden = true;
   const thdCaption = element("div", { class: "caption" });
-  const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev against d1"));
+  const distanceCaption = element("div", { class: "caption" }, element("span", {}, "Euclidean distance Ev over d1"));
   const root = element(
     "div",
     {
@@ -36,31 +36,35 @@ export function createSineCharts({ shown, point, take }) {
     element("div", { class: "chart" }, distanceCaption, distanceCanvas),
     overlay,
   );
-  /** Plotting area of both charts; the one of the THD may be missing. @type {import("../../state/types.js").Plot | null} */
+  /** Plot area of both charts; the chart of the THD may be hidden. @type {import("../../state/types.js").Plot | null} */
   let plot = null;
 
   watch(root, paint);
-  root.addEventListener("pointermove", (event) => point(rowUnder(event)));
+  root.addEventListener("pointermove", (event) => select(rowUnder(event)));
   root.addEventListener("click", (event) => {
-    point(rowUnder(event));
-    take();
+    select(rowUnder(event));
+    use();
   });
-  const move = (/** @type {number} */ by) => point(movedBy(shown().rows, shown().at, by));
+  const move = (/** @type {number} */ by) => select(movedBy(shown().rows, shown().selected, by));
   registerCommands(root, "Sine: figure 4", [
     { keys: ["ArrowRight", "ArrowUp"], text: "next d1", run: () => move(1) },
     { keys: ["ArrowLeft", "ArrowDown"], text: "previous d1", run: () => move(-1) },
-    { keys: ["PageUp"], text: "twenty forward", run: () => move(20) },
-    { keys: ["PageDown"], text: "twenty back", run: () => move(-20) },
-    { keys: ["Home"], text: "minimum d1", run: () => point(0) },
+    { keys: ["PageUp"], text: "20 forward", run: () => move(20) },
+    { keys: ["PageDown"], text: "20 back", run: () => move(-20) },
+    { keys: ["Home"], text: "minimum d1", run: () => select(0) },
     { keys: ["End"], text: "maximum d1", run: () => move(1e9) },
-    { keys: ["Enter", "Space"], text: "use this d1", run: take },
+    { keys: ["Enter", "Space"], text: "use this d1", run: use },
   ]);
 
   /** @param {PointerEvent | MouseEvent} event */
   function rowUnder({ clientX }) {
-    const { rows, at } = shown();
+    const { rows, selected } = shown();
     if (!plot || !rows) return null;
-    return indexAt((clientX - root.getBoundingClientRect().left - plot.left) / (plot.right - plot.left), rows, at);
+    return indexAt(
+      (clientX - root.getBoundingClientRect().left - plot.left) / (plot.right - plot.left),
+      rows,
+      selected,
+    );
   }
 
   function paint() {
@@ -84,20 +88,20 @@ export function createSineCharts({ shown, point, take }) {
   }
 
   function mark() {
-    const { rows, at, best, own, quantity } = shown();
-    const pointed = rowOf(rows, at);
+    const { rows, selected, best, current, quantity } = shown();
+    const selectedRow = rowOf(rows, selected);
     root.setAttribute("aria-valuemax", String((rows?.d1.length ?? 1) - 1));
-    root.setAttribute("aria-valuenow", String(at ?? 0));
-    root.setAttribute("aria-valuetext", valueText(pointed, quantity));
+    root.setAttribute("aria-valuenow", String(selected ?? 0));
+    root.setAttribute("aria-valuetext", valueText(selectedRow, quantity));
     const layer = cleared(overlay);
     if (!layer || !plot || !rows) return;
     const { context } = layer;
     context.font = "11px system-ui, sans-serif";
     /** @type {[Row | null, string, number[], string][]} */
     const lines = [
-      [own, "--ink", [5, 4], "now"],
+      [current, "--ink", [5, 4], "current"],
       [best, "--enable", [2, 3], "best by position"],
-      [pointed, "--axis", [], ""],
+      [selectedRow, "--axis", [], ""],
     ];
     const [low, high] = [rows.d1[0], rows.d1[rows.d1.length - 1]];
     for (const [row, ink, dash, name] of lines) {
@@ -115,13 +119,13 @@ export function createSineCharts({ shown, point, take }) {
     const tops = [thdCanvas, distanceCanvas]
       .filter(({ hidden }) => !hidden)
       .map((canvas) => canvas.offsetTop + (canvas.parentElement?.offsetTop ?? 0));
-    for (const down of tops) {
+    for (const y of tops) {
       context.beginPath();
-      context.moveTo(x, down + top);
-      context.lineTo(x, down + bottom);
+      context.moveTo(x, y + top);
+      context.lineTo(x, y + bottom);
       context.stroke();
     }
-    if (name) context.fillText(name, x + 4, tops[0] + top + (name === "now" ? 11 : 24));
+    if (name) context.fillText(name, x + 4, tops[0] + top + (name === "current" ? 11 : 24));
   }
   return { root, paint, mark };
 }

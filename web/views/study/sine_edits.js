@@ -4,7 +4,7 @@ import { rounded } from "./sine_sweep.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./selected_axis.js").SelectedAxis} SelectedAxis */
-/** @typedef {{axis: SelectedAxis | null, move: number}} Target  The selected axis and its first sine in segments; -1 where it has none. */
+/** @typedef {{axis: SelectedAxis | null, move: number}} Target  The selected axis and its first sine in segments; -1 if it has none. */
 /** @typedef {{path: string, value: any, message: string}} Edit */
 
 const NOT_NOW = "Not available while the form has errors or is being checked.";
@@ -33,7 +33,7 @@ export const addedSine = (axis, sample, d1) => ({
   message: `Axis ${axis.axis} now ends with a sine in segments; Undo removes it.`,
 });
 
-/** Puts a move through vertices in place of the axis' sine, or after its moves. @param {Target} target @param {any} sample @param {(sine: any) => object | string} make  Of the sine; a string says why not. @returns {Edit | string} */
+/** Replaces the axis' sine by a move through vertices, or appends that move. @param {Target} target @param {any} sample @param {(sine: any) => object | string} make  The move for a sine; a text says why there is none. @returns {Edit | string} */
 export function vertexEdit({ axis, move }, sample, make) {
   if (!axis) return NOT_NOW;
   const value = make((axis.moves[move] ?? sample).sine_segments);

@@ -1,4 +1,4 @@
-/** The line of the tab Sine that reports its edits of the scenario, and offers a sine where the axis has none. */
+/** The line of the tab Sine that reports its edits of the scenario, and offers to add a sine to an axis without one. */
 import { element, fill, setText } from "../../dom.js";
 import { get } from "../../state/paths.js";
 import { addedSine, deviationEdit, targetOf, vertexEdit, whyNoAxis } from "./sine_edits.js";
@@ -17,8 +17,8 @@ export function createSineNote({ samples, dispatch, now }) {
     setText(root, message);
   }
 
-  /** Puts a d1 into the scenario. @param {number} d1 */
-  function put(d1) {
+  /** Sets the scenario's d1. @param {number} d1 */
+  function setDeviation(d1) {
     const { axis, move } = targetOf(now());
     described = null;
     if (!axis) return setText(root, whyNoAxis(now()));
@@ -32,7 +32,7 @@ export function createSineNote({ samples, dispatch, now }) {
   function add(d1) {
     const { axis, move } = targetOf(now());
     root.focus({ preventScroll: true });
-    if (!axis || move >= 0) return put(d1);
+    if (!axis || move >= 0) return setDeviation(d1);
     return apply(addedSine(axis, samples.moves.sine_segments, d1));
   }
 
@@ -50,5 +50,5 @@ export function createSineNote({ samples, dispatch, now }) {
     described = null;
     setText(root, "");
   }
-  return { root, put, putMove, render };
+  return { root, setDeviation, putMove, render };
 }

@@ -10,7 +10,7 @@ import { short } from "../../state/number.js";
 export const MIN_ORDER = 3;
 /** Maximum order of a scenario. */
 export const MAX_ORDER = 1000;
-/** Points in one piece of the sweep: a few ms of work. */
+/** Points in one request of the sweep: it takes a few ms. */
 const PIECE = 10;
 /** Parts of the range, each searched for the best d1 of every number of segments. */
 const PARTS = 16;
@@ -29,7 +29,7 @@ export const rounded = (d1) => Math.ceil(d1 * 1e8 - 1e-4) / 1e8;
 /** @param {number} ratio */
 export const percent = (ratio) => (Number.isFinite(ratio) ? `${short(100 * ratio, 4)} %` : "–");
 
-/** The arguments of each piece of work: all rows, and the best rows of each part of the range. @param {Settings} settings */
+/** The arguments of each request: all rows, and the best rows of each part of the range. @param {Settings} settings */
 export function pieces({ low, high, points, order, sensor }) {
   const rows = Array.from({ length: Math.ceil(points / PIECE) }, (_, index) => [
     low,
@@ -40,7 +40,7 @@ export function pieces({ low, high, points, order, sensor }) {
     PIECE * index,
     PIECE * (index + 1),
   ]);
-  // A smaller d1 has more polylines near it, so the parts grow geometrically.
+  // Polylines are denser at a small d1, so the parts grow geometrically.
   const edge = (/** @type {number} */ index) => (index === PARTS ? high : low * (high / low) ** (index / PARTS));
   const best = Array.from({ length: PARTS }, (_, index) => [edge(index), edge(index + 1), order, sensor]);
   return { rows, best };
@@ -84,24 +84,24 @@ export function bestRows(found) {
 export const bestRow = (rows) =>
   rows.reduce((best, row) => (row.position < best.position ? row : best), rows[0]) ?? null;
 
-/** Whether a d1 is the first or last of the range, beyond which there may be better ones. @param {number} d1 @param {Float64Array} range */
+/** Whether a d1 is at an end of the range: there may be better ones outside. @param {number} d1 @param {Float64Array} range */
 export function isAtEnd(d1, range) {
   return [range[0], range[range.length - 1]].some((end) => Math.abs(d1 - end) <= 1e-6 * end);
 }
 
-/** The row at a part of the plotting area's width; `before` where the part is outside. @param {number} part @param {Rows} rows @param {number | null} before */
-export function indexAt(part, rows, before) {
+/** The row at a share of the plot area's width; `before` if the share is outside. @param {number} share @param {Rows} rows @param {number | null} before */
+export function indexAt(share, rows, before) {
   const last = rows.d1.length - 1;
-  return part < -0.02 || part > 1.02 ? before : Math.min(last, Math.max(0, Math.round(part * last)));
+  return share < -0.02 || share > 1.02 ? before : Math.min(last, Math.max(0, Math.round(share * last)));
 }
 
-/** The row that is `by` rows away; from none the first or the last. @param {Rows | null} rows @param {number | null} at @param {number} by */
-export function movedBy(rows, at, by) {
+/** The row that is `by` rows away; without a selected row, the first or the last. @param {Rows | null} rows @param {number | null} selected @param {number} by */
+export function movedBy(rows, selected, by) {
   const last = (rows?.d1.length ?? 1) - 1;
-  return Math.min(last, Math.max(0, (at ?? (by > 0 ? -1 : 1)) + by));
+  return Math.min(last, Math.max(0, (selected ?? (by > 0 ? -1 : 1)) + by));
 }
 
-/** Cells of the table of rows; `none` stands where there is no row. @param {string} name @param {Row | null} row @param {string} none */
+/** Cells of a row of the table; `none` is the text if there is no row. @param {string} name @param {Row | null} row @param {string} none */
 export function cellsOf(name, row, none) {
   if (!row) return [name, none, "", "", "", "", "", ""];
   const { d1, segments, position, speed, acceleration, filtered, euclidean } = row;
@@ -109,7 +109,7 @@ export function cellsOf(name, row, none) {
   return [name, short(d1, 6), String(segments), ...ratios, short(euclidean, 4)];
 }
 
-/** The selected row as a slider's text. @param {Row | null} row @param {Quantity} quantity */
+/** The selected row as the value of the slider. @param {Row | null} row @param {Quantity} quantity */
 export function valueText(row, quantity) {
   if (!row) return "no d1 selected";
   return `d1 ${short(row.d1)}, ${row.segments} segments, THD of ${quantity} ${percent(row[quantity])}, Ev ${short(row.euclidean)}; Enter uses it`;
@@ -123,13 +123,13 @@ export function captionOf(quantity, sensor, order) {
       : sensor === undefined
         ? "acceleration, filtered"
         : `acceleration filtered by a sensor of ${short(sensor, 4)} harmonics`;
-  return `THD of ${what}, against d1, harmonics 2 to ${order}, %`;
+  return `THD of ${what} over d1, harmonics 2 to ${order}, %`;
 }
 
-/** Why there is no chart of a quantity; empty where there is one. @param {Rows | null} rows @param {Quantity} quantity @param {number | undefined} sensor */
+/** Why there is no chart of a quantity; empty if there is one. @param {Rows | null} rows @param {Quantity} quantity @param {number | undefined} sensor */
 export function whyNoChart(rows, quantity, sensor) {
   if (rows === null || rows[quantity].some(Number.isFinite)) return "";
   return sensor === undefined
     ? "For filtered acceleration, enter a sensor bandwidth under Spectrum in the form, and use a sine in segments."
-    : "The sweep with the sensor has not run.";
+    : "The sweep with the sensor has not run yet.";
 }

@@ -5,56 +5,58 @@ import { selectedSteps } from "./selected_steps.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
-/** @typedef {{json: string, controller: number, axis: number, run: number | null}} Tabled  An axis, or, where no plan is known, a channel and the revision that it is shown of. */
+/** @typedef {{json: string, controller: number, axis: number, run: number | null}} Tabled  An axis; without a plan, a channel and the revision of its run. */
 /** @typedef {{form: string, widths: string, us: number}} Choice */
 
-/** @type {{[form: string]: string}} */
+/** Labels of the forms. @type {{[form: string]: string}} */
 export const FORMS = { exact: "Exact list", document: "Table of the paper", compressed: "Compressed" };
-/** @type {{[language: string]: [string, string, string]}} Label, ending of the file and its type. */
+/** Labels of the widths of an entry. @type {{[widths: string]: string}} */
+export const WIDTHS = { q16: "20 bytes, 1/65536 cycle", q8: "8 bytes, 1/256 cycle", ticks: "8 bytes, whole cycles" };
+/** Label, extension and type of the file of each language. @type {{[language: string]: [string, string, string]}} */
 export const LANGUAGES = {
   c: ["C", ".c", "text/x-c"],
   avr: ["C for AVR (PROGMEM)", "-avr.c", "text/x-c"],
   rust: ["Rust", ".rs", "text/rust"],
   csv: ["CSV", ".csv", "text/csv"],
 };
-/** The table that is selected in the tab, which the export panel offers, too. @type {Choice} */
+/** The table selected in the tab; the export panel offers it, too. @type {Choice} */
 export const choice = { form: "compressed", widths: "q16", us: 25 };
 
-/** Whose steps are kept. @param {State} state @returns {Tabled | string | null}  As `selectedAxis`. */
+/** The axis or channel of the tables. @param {State} state @returns {Tabled | string | null}  As `selectedAxis`. */
 export function tabled(state) {
-  const of = selectedAxis(state);
-  if (of && typeof of !== "string") return { ...of, run: null };
-  if (of !== null && of !== "" && !state.scenario.source?.motion) {
+  const axis = selectedAxis(state);
+  if (axis && typeof axis !== "string") return { ...axis, run: null };
+  if (axis !== null && axis !== "" && !state.scenario.source?.motion) {
     const steps = selectedSteps(state);
     return steps && { json: steps.json, controller: steps.controller, axis: steps.channel, run: steps.revision };
   }
-  return /** @type {string | null} */ (of);
+  return /** @type {string | null} */ (axis);
 }
 
-/** A tableRequest about tables, and how its arguments begin. @param {Engine} engine @param {"step_table" | "step_source"} name @param {Tabled} of @returns {Promise<[string, any[]]>} */
+/** The method of a request for a table, and its first arguments. @param {Engine} engine @param {"step_table" | "step_source"} name @param {Tabled} subject @returns {Promise<[string, any[]]>} */
 export async function tableRequest(engine, name, { json, controller, axis, run }) {
   const begin = [json, controller, axis];
   return run === null ? [name, begin] : [`${name}_of_run`, [...begin, await engine.request("records_of", axis)]];
 }
 
-/** Files of the table that is selected, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/offers.js").Offer[]} */
+/** Files of the selected table, for the export panel. @param {State} state @param {Engine} engine @returns {import("../../shell/offers.js").Offer[]} */
 export function tableFiles(state, engine) {
-  const of = tabled(state);
-  return of && typeof of !== "string" ? files(state, engine, of) : [];
+  const subject = tabled(state);
+  return subject && typeof subject !== "string" ? files(state, engine, subject) : [];
 }
 
-/** @param {State} state @param {Engine} engine @param {Tabled} of */
-export function files(state, engine, of) {
-  const { controller, axis } = of;
+/** The files of a table, one for each language. @param {State} state @param {Engine} engine @param {Tabled} subject */
+export function files(state, engine, subject) {
+  const { controller, axis } = subject;
   const { form, widths, us } = choice;
   const part = controller > 0 ? `-controller-${controller + 1}` : "";
-  return Object.entries(LANGUAGES).map(([language, [label, ending, type]]) => ({
-    name: `${baseName(state)}${part}-axis-${axis}-${form}-${widths}${ending}`,
+  return Object.entries(LANGUAGES).map(([language, [label, extension, type]]) => ({
+    name: `${baseName(state)}${part}-axis-${axis}-${form}-${widths}${extension}`,
     type,
-    label: `${label}: axis ${axis}, ${form}, ${widths}`,
+    label: `${label}: axis ${axis}, ${FORMS[form].toLowerCase()}, ${WIDTHS[widths]}`,
     language,
     make: async () => {
-      const [method, begin] = await tableRequest(engine, "step_source", of);
+      const [method, begin] = await tableRequest(engine, "step_source", subject);
       const pieces = [[...begin, form, widths, us, language]];
       return engine.distribute(method, pieces, new AbortController().signal);
     },

@@ -7,35 +7,35 @@ import { createJob } from "./job.js";
 import { field } from "./parts.js";
 import { isAnother } from "./selected_axis.js";
 import { table } from "./table.js";
-import { choice, FORMS, files, LANGUAGES, tabled, tableRequest } from "./table_files.js";
+import { choice, FORMS, files, LANGUAGES, tabled, tableRequest, WIDTHS } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Form */
 
-/** @type {{[widths: string]: string}} */
-const WIDTHS = { q16: "20 bytes, 1/65536 cycle", q8: "8 bytes, 1/256 cycle", ticks: "8 bytes, whole cycles" };
 const ROWS = Object.keys(FORMS).flatMap((form) => Object.keys(WIDTHS).map((widths) => ({ form, widths })));
 
 /** @param {import("./study.js").StudyPage} page @returns {import("./study.js").StudyTab} */
 export function createTables({ engine, now, panel }) {
-  const error = field("Max error of compressed list", "µs", choice.us, { min: 0, max: 1e6 }, () => refresh(now()));
+  const error = field("Maximum error of the compressed list", "µs", choice.us, { min: 0, max: 1e6 }, () =>
+    refresh(now()),
+  );
   const job = createJob("Tables");
   const about = element("p", { class: "study-note" });
   const note = element("p", { class: "study-note" });
   const list = table("Stored forms", [
     "form",
-    "widths",
+    "entry",
     "#entries",
     "#bytes",
     "~#steps per entry",
-    "#max error",
-    "#r.m.s. error",
+    "#maximum error",
+    "#RMS error",
     "~#steps",
   ]);
   const saves = element("p", { class: "study-bar", role: "group", "aria-label": "Save the selected table" });
   const status = element("span", { "aria-live": "polite" });
   fill(panel, element("div", { class: "study-bar" }, error.root, job.root), about, list.root, note, saves);
-  /** What the table shows, and what it was made of. @type {Form[]} */
+  /** The rows of the table; `key` identifies their subject. @type {Form[]} */
   let forms = [];
   let key = "";
   list.body.addEventListener("click", ({ target }) => {
@@ -56,17 +56,21 @@ export function createTables({ engine, now, panel }) {
       pick.checked = pick.value === `${choice.form}-${choice.widths}`;
       pick.closest("tr")?.classList.toggle("chosen", pick.checked);
     }
-    const of = tabled(now());
-    if (!of || typeof of === "string") return fill(saves);
-    const none =
+    const subject = tabled(now());
+    if (!subject || typeof subject === "string") return fill(saves);
+    const isUnavailable =
       forms[ROWS.findIndex(({ form, widths }) => form === choice.form && widths === choice.widths)]?.why !== null;
     setText(status, "");
     fill(
       saves,
-      element("span", {}, none ? "" : `Save ${FORMS[choice.form].toLowerCase()}, ${choice.widths}, as`),
-      ...(none
+      element(
+        "span",
+        {},
+        isUnavailable ? "" : `Save ${FORMS[choice.form].toLowerCase()} (${WIDTHS[choice.widths]}) as`,
+      ),
+      ...(isUnavailable
         ? []
-        : files(now(), engine, of).map(({ name, type, language, make }) => {
+        : files(now(), engine, subject).map(({ name, type, language, make }) => {
             const press = element(
               "button",
               { type: "button", "data-language": language, title: name },
@@ -77,8 +81,8 @@ export function createTables({ engine, now, panel }) {
               try {
                 save(name, type, await make());
                 setText(status, `Saved ${name}.`);
-              } catch (failed) {
-                setText(status, `No ${name}: ${errorMessage(failed)}`);
+              } catch (error) {
+                setText(status, `${name} cannot be written: ${errorMessage(error)}`);
               }
             });
             return press;
@@ -89,7 +93,7 @@ export function createTables({ engine, now, panel }) {
 
   function show() {
     const steps = forms[0].steps;
-    // What is refused in all widths for one reason is one row.
+    // A form refused in all widths for one reason has one row.
     const alike = (/** @type {number} */ at) =>
       ROWS.every(
         ({ form }, other) =>
@@ -119,13 +123,7 @@ export function createTables({ engine, now, panel }) {
               ];
         if (form === "document" && document_bytes !== null && why === null) cells[1] += ` (${count(document_bytes)})`;
         if (why === null && bytes === fewest) cells[1] = element("strong", {}, cells[1]);
-        return [
-          name,
-          alike(at)
-            ? "all"
-            : element("span", {}, widths, element("span", { class: "wide-only" }, `: ${WIDTHS[widths]}`)),
-          ...cells,
-        ];
+        return [name, alike(at) ? "all" : WIDTHS[widths], ...cells];
       }),
     );
     distinct.forEach((at, row) => {
@@ -134,47 +132,47 @@ export function createTables({ engine, now, panel }) {
       cell.setAttribute("colspan", "6");
       cell.className = "why";
     });
-    const own = forms.find(({ document_bytes }) => document_bytes !== null);
+    const hasPaper = forms.some(({ document_bytes }) => document_bytes !== null);
     setText(
       note,
-      `${best < 0 ? "" : `Fewest bytes (bold): ${FORMS[ROWS[best].form].toLowerCase()}, ${ROWS[best].widths}. `}The compressed list searches for the longest entry; the exact list only continues an entry while it fits, so it can be longer even for error 0. One interval of 4 bytes per step would take ${count(4 * steps)} bytes.${own ? " In parentheses: bytes of the table in the paper." : ""} Every list has all steps.`,
+      `${best < 0 ? "" : `Fewest bytes (bold): ${FORMS[ROWS[best].form].toLowerCase()} (${WIDTHS[ROWS[best].widths]}). `}The compressed list searches for the longest entry; the exact list only continues an entry while it fits, so it can be longer even for error 0. One interval of 4 bytes per step would take ${count(4 * steps)} bytes.${hasPaper ? " In parentheses: bytes of the table in the paper." : ""} Every list has all steps.`,
     );
     mark();
   }
 
   /** @param {State} state */
   function refresh(state) {
-    const of = tabled(state);
-    if (of === null) return;
-    panel.classList.toggle("stale", of === "");
-    if (of === "") return;
-    if (typeof of === "string") {
+    const subject = tabled(state);
+    if (subject === null) return;
+    panel.classList.toggle("stale", subject === "");
+    if (subject === "") return;
+    if (typeof subject === "string") {
       key = "";
-      setText(about, of);
+      setText(about, subject);
       for (const each of [list.root, note, saves]) each.hidden = true;
       return;
     }
     choice.us = error.value();
-    const next = JSON.stringify([of.json, of.controller, of.axis, of.run, choice.us]);
+    const next = JSON.stringify([subject.json, subject.controller, subject.axis, subject.run, choice.us]);
     if (next === key) return mark();
     key = next;
     job.run(
-      async (signal, tell) => {
+      async (signal, report) => {
         let done = 0;
-        tell(0, `0 of ${ROWS.length} tables`);
-        const [method, begin] = await tableRequest(engine, "step_table", of);
+        report(0, `0 of ${ROWS.length} tables`);
+        const [method, begin] = await tableRequest(engine, "step_table", subject);
         const pieces = ROWS.map(({ form, widths }) => [...begin, form, widths, choice.us]);
         return engine.distribute(method, pieces, signal, () =>
-          tell(++done / pieces.length, `${done} of ${pieces.length} tables`),
+          report(++done / pieces.length, `${done} of ${pieces.length} tables`),
         );
       },
-      (made) => {
-        forms = made;
+      (rows) => {
+        forms = rows;
         for (const each of [list.root, note, saves]) each.hidden = false;
-        const derived = now().derived?.controllers[of.controller]?.axes[of.axis];
+        const derived = now().derived?.controllers[subject.controller]?.axes[subject.axis];
         setText(
           about,
-          `${of.run === null ? "Axis" : "Channel"} ${of.axis}: ${counted(made[0].steps, "step")}${of.run === null ? "" : ", as shown in the views; there is no plan"}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`,
+          `${subject.run === null ? "Axis" : "Channel"} ${subject.axis}: ${counted(rows[0].steps, "step")}${subject.run === null ? "" : ", as shown in the views; there is no plan"}${derived ? ` in ${si(derived.duration_s, "s")}, up to ${plain(derived.peak_speed_steps_s, "steps/s")}` : ""}.`,
         );
         show();
       },

@@ -17,7 +17,7 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   const about = element("p", { class: "study-note", "aria-live": "polite", tabindex: "-1" });
   const verdict = element("p", { id: "torque-verdict", "aria-live": "polite" });
   const chart = createTorqueChart(() => (body.hidden ? null : torque));
-  const facts = table("The motor", ["of the motor", "#value"]);
+  const facts = table("The motor", ["property", "#value"]);
   const shortages = table("Too little torque", [
     "from",
     "#to",
@@ -67,40 +67,43 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
   const addMotor = () =>
     button("Add the motor of Song 2021", "Add the motor of Song 2021 to the axis", () => {
       // Another axis may be selected by now.
-      const of = selectedAxis(now());
-      if (!of || typeof of === "string" || get(now().scenario, `${of.path}.motor`)) return;
+      const axis = selectedAxis(now());
+      if (!axis || typeof axis === "string" || get(now().scenario, `${axis.path}.motor`)) return;
       about.focus({ preventScroll: true });
-      dispatch({ type: "edit", path: `${of.path}.motor`, value: samples.motor });
+      dispatch({ type: "edit", path: `${axis.path}.motor`, value: samples.motor });
     });
 
   /** @param {State} state */
   function refresh(state) {
-    const of = selectedAxis(state);
-    panel.classList.toggle("stale", of === "");
-    if (!of) return;
-    const listed = typeof of === "string" && !state.scenario.source?.motion;
+    const axis = selectedAxis(state);
+    panel.classList.toggle("stale", axis === "");
+    if (!axis) return;
+    const listed = typeof axis === "string" && !state.scenario.source?.motion;
     motor.show(listed && !state.scenario.plant);
     if (listed) return refreshSteps(state);
-    if (typeof of === "string") {
+    if (typeof axis === "string") {
       subjectKey = "";
       body.hidden = true;
-      return setText(about, of);
+      return setText(about, axis);
     }
-    const next = JSON.stringify([of.json, of.controller, of.axis]);
+    const next = JSON.stringify([axis.json, axis.controller, axis.axis]);
     if (next === subjectKey) return;
     subjectKey = next;
     job.run(
-      () => engine.compute("torque", "torque", of.json, of.controller, of.axis),
+      () => engine.compute("torque", "torque", axis.json, axis.controller, axis.axis),
       (/** @type {Torque | undefined} */ found) => {
         torque = null;
         body.hidden = !found;
         if (!found)
           return fill(
             about,
-            `Axis ${of.axis} has no motor. Add one in the form, under the mechanics of the axis. `,
+            `Axis ${axis.axis} has no motor. Add one in the form, under the mechanics of the axis. `,
             addMotor(),
           );
-        setText(about, `Axis ${of.axis}: available torque and torque needed by the plan. The form has the motor data.`);
+        setText(
+          about,
+          `Axis ${axis.axis}: available torque and torque needed by the plan. The form has the motor data.`,
+        );
         return show(found);
       },
     );
@@ -108,29 +111,29 @@ export function createTorque({ engine, samples, dispatch, now, panel }) {
 
   /** The torque that the steps of a channel without a plan need. @param {State} state */
   function refreshSteps(state) {
-    const of = selectedSteps(state);
-    panel.classList.toggle("stale", of === null);
-    if (!of) return;
-    const { json, revision, controller, channel } = of;
-    const named = motor.value();
-    const next = JSON.stringify([revision, controller, channel, named]);
+    const steps = selectedSteps(state);
+    panel.classList.toggle("stale", steps === null);
+    if (!steps) return;
+    const { json, revision, controller, channel } = steps;
+    const motorId = motor.value();
+    const next = JSON.stringify([revision, controller, channel, motorId]);
     if (next === subjectKey) return;
     subjectKey = next;
-    if (!state.scenario.plant && named === "") {
+    if (!state.scenario.plant && motorId === "") {
       body.hidden = true;
-      setText(about, "There is no motor: choose one for these steps, or simulate one in the view Motor.");
+      setText(about, "There is no motor: select one for these steps, or simulate one in the view Motor.");
       return;
     }
     job.run(
       async () => {
         const run = await engine.request("records_of", channel);
-        return engine.compute("torque", "torque_of_steps", json, controller, channel, run, named);
+        return engine.compute("torque", "torque_of_steps", json, controller, channel, run, motorId);
       },
       (/** @type {Torque | undefined} */ found) => {
         torque = null;
         body.hidden = !found;
         if (!found) return;
-        setText(about, stepsText(channel, named, found.report));
+        setText(about, stepsText(channel, motorId, found.report));
         show(found);
       },
     );

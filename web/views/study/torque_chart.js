@@ -2,7 +2,7 @@
 import { element } from "../../dom.js";
 import { color, draw, watch } from "../../time/plot.js";
 
-/** @param {() => import("./torque_report.js").Torque | null} shown  Null where the chart is not visible. */
+/** @param {() => import("./torque_report.js").Torque | null} shown  Null if the chart is hidden. */
 export function createTorqueChart(shown) {
   const canvas = element("canvas", { role: "img", "aria-label": "Torque-speed curve" });
   const key = (/** @type {string} */ kind, /** @type {string} */ text) =>
@@ -25,16 +25,16 @@ export function createTorqueChart(shown) {
     const { rate, available, needed, report } = torque;
     const { working_rate: working } = report;
     stated.hidden = working === null;
-    const most = Math.max(...available, ...needed.filter((torque) => !Number.isNaN(torque)));
+    const maxTorque = Math.max(...available, ...needed.filter((torque) => !Number.isNaN(torque)));
     const line = { opacity: 1, width: 2, x: rate };
     const positive = available.map((torque) => Math.max(torque, 0));
     draw(canvas, {
       x: { min: 0, max: rate[rate.length - 1], unit: "steps/s", prefix: true, label_px: 20 },
-      y: { min: 0, max: 1.08 * most, unit: "", prefix: false, label_px: 58 },
+      y: { min: 0, max: 1.08 * maxTorque, unit: "", prefix: false, label_px: 58 },
       series: [
         { ...line, color: color("--actual"), opacity: 0.75, shape: { stems: { y: needed, shift: 0 } } },
         { ...line, color: color("--ideal"), shape: { line: { y: positive } } },
-        ...(working === null ? [] : [workingLine(working, 2 * most)]),
+        ...(working === null ? [] : [workingLine(working, 2 * maxTorque)]),
       ],
     });
   }

@@ -21,7 +21,7 @@ const upTo = (rate) => (rate === null ? "any rate" : rate === 0 ? "no rate" : ra
 const rampText = (seconds) => `${seconds.toFixed(4)} s`;
 
 /** Ramps with enough torque; if there are none, whether rate or torque is the limit. @param {Ramps} ramps */
-function enough({ enough_s, too_fast_s, without_ramps }) {
+function enoughText({ enough_s, too_fast_s, without_ramps }) {
   if (enough_s) return `${enough_s[0].toFixed(4)} to ${rampText(enough_s[1])}`;
   const all = too_fast_s ? "all above the working rate" : "none";
   return without_ramps ? `without ramps only; with ramps ${all}` : all;
@@ -46,7 +46,7 @@ export function motorRows({ standing_mn_m, load_mn_m, corner_rate, torque_rate, 
     ...(working_rate === null ? [] : [["Stated working rate", rateText(working_rate)]]),
     ...(least
       ? [
-          ["Smallest margin", torqueText(least.available_mn_m - Math.abs(least.needed_mn_m))],
+          ["Minimum margin", torqueText(least.available_mn_m - Math.abs(least.needed_mn_m))],
           ["at", `${si(least.at_s, "s")}, ${rateText(least.rate)}`],
         ]
       : []),
@@ -54,17 +54,17 @@ export function motorRows({ standing_mn_m, load_mn_m, corner_rate, torque_rate, 
   ];
 }
 
-/** What is wrong, in a sentence or two; empty where the torque is enough. @param {Report} report */
+/** Warnings about rate and torque; empty if the torque is enough. @param {Report} report */
 export function shortageText({ over_working_rate, total }) {
-  const fast =
+  const tooFast =
     over_working_rate === null
       ? ""
-      : `⚠ ${rateText(over_working_rate)} exceed the stated working rate: allow more time, or use shorter ramps. `;
-  const lack =
+      : `⚠ ${rateText(over_working_rate)} exceed the stated working rate: use more time or shorter ramps. `;
+  const tooLittle =
     total === 0
       ? ""
-      : `⚠ Too little torque in ${total === 1 ? "one interval" : `${count(total)} intervals`}: allow more time, or use gentler ramps, less load or a higher supply voltage.`;
-  return fast + lack;
+      : `⚠ Too little torque in ${total === 1 ? "one interval" : `${count(total)} intervals`}: use more time, longer ramps, less load or a higher supply voltage.`;
+  return tooFast + tooLittle;
 }
 
 /** @param {Report} report @returns {string[][]} */
@@ -85,7 +85,7 @@ export function shortageRows({ shortages }) {
 export function rampRows({ ramps }) {
   return ramps.map((ramp) => [
     `${ramp.index + 1}, ${si(ramp.duration_s, "s")}`,
-    enough(ramp),
+    enoughText(ramp),
     ramp.longest_s === null ? (ramp.too_fast ? "too fast" : "any") : rampText(ramp.longest_s),
     rampText(ramp.room_s),
   ]);

@@ -9,14 +9,14 @@ import { table } from "./table.js";
 /** @typedef {{angle_deg: Float64Array, height: Float64Array, thd: number}} Vertices  Of a quarter, from the extreme to the middle. */
 /** @typedef {{amplitude: {[unit: string]: number}, period_s: number, periods: number}} Sine  As a scenario has it. */
 
-/** Digits of a time or a position: more than decide any cycle. */
+/** Digits of a time or a position: enough for any cycle. */
 const DIGITS = 12;
 
 /**
- * @param {{engine: import("../../engine/engine.js").Engine, order: () => number, take: (made: (sine: Sine) => object | string) => void}} page
- *   The highest harmonic that counts, and who puts a move into the scenario in place of its sine.
+ * @param {{engine: import("../../engine/engine.js").Engine, order: () => number, putMove: (make: (sine: Sine) => object | string) => void}} page
+ *   `order` is the highest harmonic of the distortion; `putMove` replaces the scenario's sine.
  */
-export function createVertices({ engine, order, take }) {
+export function createVertices({ engine, order, putMove }) {
   const segments = field("segments per quarter", "", 6, { min: 1, max: 32, integer: true }, find);
   const job = createJob("Vertices");
   const note = element("p", { class: "study-note", id: "sine-vertices" });
@@ -28,19 +28,19 @@ export function createVertices({ engine, order, take }) {
     list.root,
   ];
 
-  /** Looks for the best vertices, on the curve and free. */
+  /** Finds the best vertices, on the curve and free. */
   function find() {
     const number = segments.value();
     job.run(
-      (signal, tell) => {
-        tell(0, counted(number, "segment"));
-        const questions = [false, true].map((free) => [number, free, order()]);
-        return engine.distribute("sine_vertices", questions, signal);
+      (signal, report) => {
+        report(0, counted(number, "segment"));
+        const requests = [false, true].map((free) => [number, free, order()]);
+        return engine.distribute("sine_vertices", requests, signal);
       },
       (/** @type {Vertices[]} */ [onCurve, free]) => {
         const use = (/** @type {Vertices} */ vertices, /** @type {string} */ name) =>
           button("Use", `Use: ${counted(number, "segment")}, vertices ${name}`, () =>
-            take((sine) => through(vertices, sine)),
+            putMove((sine) => through(vertices, sine)),
           );
         fill(
           note,
@@ -66,13 +66,13 @@ export function createVertices({ engine, order, take }) {
   return { parts, find };
 }
 
-/** The move through the vertices, all periods of it; why not, where it would be too long. @param {Vertices} vertices @param {Sine} sine */
+/** The move through the vertices for all periods of a sine; a text says why there is none. @param {Vertices} vertices @param {Sine} sine */
 function through({ angle_deg, height }, { amplitude, period_s, periods }) {
   const [[unit, size]] = Object.entries(amplitude);
-  const most = maxLengthOf("Points", "points");
+  const maxPoints = maxLengthOf("Points", "points");
   const quarter = angle_deg.length - 1;
-  if (4 * quarter * periods + 1 > most)
-    return `${counted(periods, "period")} of ${count(4 * quarter)} vertices exceed the ${count(most)} points of a move; use at most ${count(Math.floor((most - 1) / (4 * quarter)))} periods.`;
+  if (4 * quarter * periods + 1 > maxPoints)
+    return `${counted(periods, "period")} of ${count(4 * quarter)} vertices exceed the ${count(maxPoints)} points of a move; use at maxPoints ${count(Math.floor((maxPoints - 1) / (4 * quarter)))} periods.`;
   const half = [...angle_deg.keys()].map((i) => [angle_deg[i], height[i]]);
   const down = [
     ...half,
