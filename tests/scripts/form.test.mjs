@@ -158,7 +158,7 @@ test("segments and panels do not use the line", () => {
 });
 
 test("sample packets begin with the address of their controller on a raw line", () => {
-  const bus = { channels: 2, boot_cycles: 9, slots: 4, step_period_cycles: 10 };
+  const bus = { channels: 2, self_test_cycles: 9, slots: 4, step_period_cycles: 10 };
   const raw = { bus, line: { protocol: "raw", address: 5 } };
   assert.deepEqual(samplePackets(raw, bus, 5), ["058a8a", "050a0a"]);
   assert.deepEqual(samplePackets({ ...raw, line: { protocol: "framed" } }, bus, 5), ["8a8a", "0a0a"]);

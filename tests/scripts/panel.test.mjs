@@ -45,7 +45,7 @@ test("a press within another one of the same button is refused", () => {
 
 test("an input that the axis drives, or that changes in this cycle, is refused", () => {
   assert.match(
-    put([], { cycle: 1, input: "limit_min", level: 1 }, { min_switch_at: 5 }, timeOf).refused,
+    put([], { cycle: 1, input: "limit_min", level: 1 }, { min_switch_at_steps: 5 }, timeOf).refused,
     /The left limit switch is driven by the left switch of the virtual axis/,
   );
   assert.match(

@@ -47,5 +47,12 @@ function readSegment(line) {
     whole,
   );
   if (length !== undefined) return { dwell: { length_q16: first } };
-  return { steps: { count: first, interval_q16, add_q16, direction: direction.toLowerCase() === "right" ? "positive" : "negative" } };
+  return {
+    steps: {
+      count: first,
+      interval_q16,
+      add_q16,
+      direction: direction.toLowerCase() === "right" ? "positive" : "negative",
+    },
+  };
 }

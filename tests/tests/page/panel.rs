@@ -186,8 +186,7 @@ fn what_cannot_be_is_told_and_changes_nothing() -> Result<()> {
         page.click("[data-input='jog_plus']").await?;
         page.until(&format!("{SAID}.includes('“jog right” already changes at 250 ms')")).await?;
         page.click("[data-input='limit_max']").await?;
-        page.until(&format!("{SAID}.includes('The right limit switch is driven by')"))
-            .await?;
+        page.until(&format!("{SAID}.includes('The right limit switch is driven by')")).await?;
         page.ready().await?;
         until_run(&page, &known).await?;
         // A press that means nothing is reported, and where.

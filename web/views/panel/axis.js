@@ -71,8 +71,16 @@ export function createAxis(root, push) {
       };
       fill(
         rail,
-        ...zone("min switch", typeof settings.min_switch_at_steps === "number" ? low : null, settings.min_switch_at_steps),
-        ...zone("max switch", settings.max_switch_at_steps, typeof settings.max_switch_at_steps === "number" ? high : null),
+        ...zone(
+          "min switch",
+          typeof settings.min_switch_at_steps === "number" ? low : null,
+          settings.min_switch_at_steps,
+        ),
+        ...zone(
+          "max switch",
+          settings.max_switch_at_steps,
+          typeof settings.max_switch_at_steps === "number" ? high : null,
+        ),
         ...zone("home switch", settings.home_from_steps, settings.home_to_steps),
         ...mark("end", settings.hard_min_steps),
         ...mark("end", settings.hard_max_steps),

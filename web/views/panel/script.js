@@ -13,7 +13,9 @@ export function driven(axis) {
   return {
     ...(isSet(axis?.min_switch_at_steps) ? { limit_min: "the left switch of the virtual axis" } : {}),
     ...(isSet(axis?.max_switch_at_steps) ? { limit_max: "the right switch of the virtual axis" } : {}),
-    ...(isSet(axis?.home_from_steps) && isSet(axis?.home_to_steps) ? { home_switch: "the home switch of the virtual axis" } : {}),
+    ...(isSet(axis?.home_from_steps) && isSet(axis?.home_to_steps)
+      ? { home_switch: "the home switch of the virtual axis" }
+      : {}),
   };
 }
 
