@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn calibrate(arguments: &Arguments) -> Result<(), Failure> {
     let text = scenarios::text(&arguments.table)?;
-    let bad = |what| Failure::Table(arguments.table.clone(), what);
+    let bad = |what| Failure::Invalid(arguments.table.clone(), what);
     let pairs = pairs(&text).map_err(bad)?;
     let found = Calibration::of(&pairs).map_err(|error| bad(error.to_string()))?;
     if arguments.json.json {

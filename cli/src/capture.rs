@@ -6,7 +6,7 @@
 
 mod advice;
 mod arguments;
-mod beside;
+mod comparison;
 mod files;
 mod text;
 
@@ -18,10 +18,10 @@ use crate::{
     progress::Progress,
     scenarios, suggest,
     timing::{self, TimeUnit},
-    torque::{self, Driven},
+    torque::{self, AxisDemand},
 };
 pub(crate) use arguments::Arguments;
-use beside::Beside;
+use comparison::PlanComparison;
 use std::{
     io::{self, BufReader, Cursor, Read},
     path::Path,
@@ -36,10 +36,10 @@ use stepscope_core::{
         motion::torque::Machine, recording::loaded_capture::LoadedCapture, trace::timing::TimingCheck,
     },
     peripheral::signal::Sink,
-    scenario::{Scenario, SegmentLists, Source},
+    scenario::{Scenario, SegmentLists, Source, TimingRules},
 };
 
-/// A pipe's recording is kept in memory, because it cannot be read twice.
+/// Maximum bytes of a recording from a pipe, which is kept in memory because it cannot be read twice.
 const MAX_PIPED: u64 = 1 << 30;
 
 pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
@@ -47,88 +47,110 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     let mut progress = Progress::new("capture", arguments.show.progress);
     let Reading { capture, error } = read(arguments, &mut progress)?;
     if let Some(error) = error.as_ref().filter(|_| capture.is_empty()) {
-        return Err(arguments.wrong(error));
+        return Err(arguments.invalid(error));
     }
     // A pipe can be read only once.
     let against = arguments.against.as_deref().map(scenarios::validated).transpose()?;
-    let base = against.as_ref().map(|(scenario, _)| &**scenario);
-    let rules = arguments.timing.rules(&arguments.file, &base.cloned().unwrap_or_default())?;
+    let planned = against.as_ref().map(|(scenario, _)| &**scenario);
+    let rules = arguments.timing.rules(&arguments.file, &planned.cloned().unwrap_or_default())?;
     let max_violations = arguments.timing.max_violations();
-    // Uses the file's ticks: rounded to cycles, a short pulse might pass. Runs before the capture's memory is reused.
+    // In the file's ticks if they are no whole cycles, because rounding could hide a short pulse. It comes before
+    // `LoadedCapture`, which reuses the capture's memory.
     let in_ticks = rules.as_ref().map(|rules| {
         LoadedCapture::timing_in_ticks(&capture, &arguments.open_options(), rules, max_violations)
-            .map_err(|error| arguments.cannot_open(&error))
     });
-    let in_ticks = in_ticks.transpose()?.flatten();
+    let in_ticks = in_ticks.transpose().map_err(|error| arguments.open_failure(&error))?.flatten();
     let recording = LoadedCapture::new(capture, &arguments.open_options())
-        .map_err(|error| arguments.cannot_open(&error))?;
-    // Only a line that the user mapped has to be one.
-    let problem = recording.report.lines.iter().find(|line| line.problem.is_some());
-    if let Some(line) = problem.filter(|_| arguments.map.is_some()) {
-        return Err(arguments.wrong(advice::line(line)));
+        .map_err(|error| arguments.open_failure(&error))?;
+    // A proposed line may be invalid, but not one that the user mapped.
+    let invalid_line = recording.report.lines.iter().find(|line| line.problem.is_some());
+    if let Some(line) = invalid_line.filter(|_| arguments.map.is_some()) {
+        return Err(arguments.invalid(advice::line(line)));
     }
-    let plan = arguments.against.as_deref().zip(against.as_ref());
-    let beside = plan.map(|(path, plan)| Beside::of(arguments, &recording, path, plan)).transpose()?;
-    let unit = in_ticks.as_ref().map_or(TimeUnit::of_cycles(recording.clock_hz), |(_, base)| {
-        TimeUnit::of_ticks(*base, recording.clock_hz)
-    });
-    // Pulses made from positions have no width.
-    let rules = rules.filter(|_| recording.has_levels());
-    let check = in_ticks.map(|(check, _)| check).or_else(|| {
-        let new = if recording.is_rounded { TimingCheck::of_rounded } else { TimingCheck::new };
-        let mut check = new(rules.as_ref()?, recording.clock_hz, max_violations);
-        recording.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
-        recording.records.iter().for_each(|record| check.record(*record));
-        Some(check)
-    });
-    let driven = driven(arguments, &recording, base);
-    files::write(arguments, &mut outputs, &recording, beside.as_ref(), base)?;
-    if let (Some(path), Some(check)) = (&arguments.timing.violations, &check) {
-        let written = timing::write_violations(outputs.create(path)?, check, unit);
+    let comparison = match (&arguments.against, &against) {
+        (Some(path), Some(plan)) => Some(PlanComparison::new(arguments, &recording, path, plan)?),
+        _ => None,
+    };
+    let timing = match in_ticks {
+        Some((check, base)) => Some((check, TimeUnit::of_ticks(base, recording.clock_hz))),
+        None => rules.and_then(|rules| {
+            let check = timing_in_cycles(&recording, &rules, max_violations)?;
+            Some((check, TimeUnit::of_cycles(recording.clock_hz)))
+        }),
+    };
+    files::write(arguments, &mut outputs, &recording, comparison.as_ref(), planned)?;
+    if let (Some(path), Some((check, unit))) = (&arguments.timing.violations, &timing) {
+        let written = timing::write_violations(outputs.create(path)?, check, *unit);
         written.map_err(|error| Failure::File(path.clone(), error))?;
     }
     progress.end(format_args!("{} {}", recording.count, recording.what), &outputs.commit()?);
-
-    if arguments.json.json {
-        let mut tables =
-            text::tables(Tables::of("capture"), &recording, arguments.map.is_none(), beside.as_ref());
-        if let Some(check) = &check {
-            tables = timing::tables(tables, check, unit);
-        }
-        if !driven.is_empty() {
-            let shortages = torque::tables::shortages(&driven);
-            tables = tables.with("torque", torque::tables::axes(&driven)).with("shortages", shortages);
-        }
-        tables.print()?;
-    } else {
-        // Text must not be mixed with a file on standard output.
-        if arguments.outputs().all(|path| path != Path::new(STANDARD)) {
-            text::print(&recording, arguments.map.is_none(), beside.as_ref(), &driven)
-                .map_err(Failure::output)?;
-        }
-        if let Some(check) = &check {
-            arguments.timing.report(check, unit)?;
-        }
-    }
+    let demands = torque_demands(arguments, &recording, planned);
+    report(arguments, &recording, comparison.as_ref(), &demands, timing.as_ref())?;
     if let Some(error) = error {
-        return Err(Failure::PartOnly(arguments.file.clone(), error.to_string()));
+        return Err(Failure::Truncated(arguments.file.clone(), error.to_string()));
     }
-    if let Some(beside) = beside.filter(|beside| !beside.found.is_same()) {
-        return Err(Failure::NotThePlan(text::difference(&beside)));
+    if let Some(comparison) = comparison.filter(|comparison| !comparison.result.is_same()) {
+        return Err(Failure::Check(text::difference(&comparison)));
     }
     arguments.timing.needs_steps(recording.report.channels.is_empty())?;
-    check.map_or(Ok(()), |check| arguments.timing.result(&check))
+    timing.map_or(Ok(()), |(check, _)| arguments.timing.result(&check))
 }
 
-/// The demand of the steps on their motors: those of the scenario, or the named one.
-fn driven(arguments: &Arguments, recording: &LoadedCapture, base: Option<&Scenario>) -> Vec<Driven> {
+/// `None` for pulses made from positions, which have no width.
+fn timing_in_cycles(
+    recording: &LoadedCapture,
+    rules: &TimingRules,
+    max_violations: usize,
+) -> Option<TimingCheck> {
+    if !recording.has_levels() {
+        return None;
+    }
+    let new = if recording.is_rounded { TimingCheck::of_rounded } else { TimingCheck::new };
+    let mut check = new(rules, recording.clock_hz, max_violations);
+    recording.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
+    recording.records.iter().for_each(|record| check.record(*record));
+    Some(check)
+}
+
+fn report(
+    arguments: &Arguments,
+    recording: &LoadedCapture,
+    comparison: Option<&PlanComparison>,
+    demands: &[AxisDemand],
+    timing: Option<&(TimingCheck, TimeUnit)>,
+) -> Result<(), Failure> {
+    let is_proposed = arguments.map.is_none();
+    if arguments.json.json {
+        let mut tables = text::tables(Tables::of("capture"), recording, is_proposed, comparison);
+        if let Some((check, unit)) = timing {
+            tables = timing::tables(tables, check, *unit);
+        }
+        if !demands.is_empty() {
+            let shortages = torque::tables::shortages(demands);
+            tables = tables.with("torque", torque::tables::axes(demands)).with("shortages", shortages);
+        }
+        return tables.print();
+    }
+    // Text must not be mixed with a file on standard output.
+    if arguments.outputs().all(|path| path != Path::new(STANDARD)) {
+        text::print(recording, is_proposed, comparison, demands).map_err(Failure::output)?;
+    }
+    timing.map_or(Ok(()), |(check, unit)| arguments.timing.report(check, *unit))
+}
+
+/// The torque that the steps demand of the scenario's motors, or of the named one.
+fn torque_demands(
+    arguments: &Arguments,
+    recording: &LoadedCapture,
+    planned: Option<&Scenario>,
+) -> Vec<AxisDemand> {
     let none = Scenario { source: Source::Segments(SegmentLists::default()), ..Scenario::default() };
-    let named = arguments.named.named(base.unwrap_or(&none));
-    let channel = |number: u8| {
-        let machine = Machine::of_channel(&named, 0, number.into())?;
-        Some(Driven::of_steps(number, machine, &recording.steps_of(number), recording.clock_hz))
+    let scenario = arguments.named.named(planned.unwrap_or(&none));
+    let demand = |channel: u8| {
+        let machine = Machine::of_channel(&scenario, 0, channel.into())?;
+        Some(AxisDemand::of_steps(channel, machine, &recording.steps_of(channel), recording.clock_hz))
     };
-    recording.report.channels.iter().filter_map(|found| channel(found.channel)).collect()
+    recording.report.channels.iter().filter_map(|report| demand(report.channel)).collect()
 }
 
 fn read(arguments: &Arguments, progress: &mut Progress) -> Result<Reading, Failure> {

@@ -21,21 +21,20 @@ pub(crate) enum Failure {
     File(PathBuf, io::Error),
     NoScenario(PathBuf, String),
     NoRecording(PathBuf, String),
-    /// A written file that could not be renamed, and the temporary files that are kept.
+    /// A written file that could not be renamed, and the remaining temporary files.
     NotRenamed(PathBuf, io::Error, Vec<PathBuf>),
     /// The output, and why it cannot be used.
     Output(PathBuf, &'static str),
     Timescale(TooCoarse),
     /// The file, and the maximum bytes.
     TooLong(PathBuf, u64),
-    /// The scenario is too long to read again; the text names a remedy.
+    /// The scenario is too long to be read again; the text says how to shorten it.
     LongScenario(PathBuf, &'static str),
     NotText(PathBuf),
     Scenario(PathBuf, Vec<Problem>),
     Link(LinkError),
     NoDigests,
     RunFingerprint(RunFingerprintError),
-    OtherRun(String),
     LongAnalysis(PathBuf, TooLong),
     Preset(String, String),
     NoPanel(PathBuf),
@@ -43,19 +42,20 @@ pub(crate) enum Failure {
     NoStandAlone(PathBuf),
     NoDriver(PathBuf),
     Index(PathBuf, Index),
-    Table(PathBuf, String),
-    Recording(PathBuf, String),
-    PartOnly(PathBuf, String),
-    NotThePlan(String),
+    /// A table, a recording or an option does not fit; the text says why.
+    Invalid(PathBuf, String),
+    /// The recording is truncated; the text says why.
+    Truncated(PathBuf, String),
+    /// A check failed (exit code 3); the text says which.
+    Check(String),
     Violations(u64),
     NoSteps,
     Port(String, String),
     Option(String),
     LostPort(String),
-    /// Number of set-backs, and their sum in ms.
+    /// How often the clock was set back, and the sum in ms.
     NotRealTime(u64, f64),
     NotRecorded(PathBuf, String),
-    NotVerified(String),
     Interrupted,
     WrongSteps(u64),
     SilentlyWrong(u64),
@@ -67,7 +67,7 @@ pub(crate) struct Index {
     pub(crate) of: Numbered,
     pub(crate) given: usize,
     pub(crate) count: usize,
-    /// Without the option all of them are meant.
+    /// Whether omitting the option selects all of them.
     pub(crate) or_all: bool,
 }
 
@@ -81,7 +81,8 @@ pub(crate) enum Numbered {
 }
 
 impl Numbered {
-    const fn words(self) -> (&'static str, &'static str, &'static str) {
+    /// Option, singular and plural.
+    const fn names(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Controllers => ("--controller", "controller", "controllers"),
             Self::Axes => ("--axis", "axis", "axes"),
@@ -93,7 +94,7 @@ impl Numbered {
 
 impl fmt::Display for Index {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (option, one, many) = self.of.words();
+        let (option, one, many) = self.of.names();
         write!(f, "{option}: {} is out of range; the scenario has ", self.given)?;
         match self.count {
             0 => return write!(f, "no {many}"),
@@ -117,7 +118,7 @@ impl Failure {
         Self::File(PathBuf::from("threads"), error)
     }
 
-    /// Such as behind `| head`.
+    /// The reader of the output, such as `head`, has ended.
     pub(crate) fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::File(_, error) if error.kind() == io::ErrorKind::BrokenPipe)
     }
@@ -130,7 +131,7 @@ impl Failure {
             | Self::NoScenario(..)
             | Self::NoRecording(..)
             | Self::NotRenamed(..)
-            | Self::PartOnly(..)
+            | Self::Truncated(..)
             | Self::Port(..) => ExitCode::from(1),
             Self::LostPort(_) => ExitCode::from(4),
             Self::Interrupted => ExitCode::from(INTERRUPTED),
@@ -150,16 +151,13 @@ impl Failure {
             | Self::LongRun(_)
             | Self::NoDriver(_)
             | Self::Index(..)
-            | Self::Table(..)
-            | Self::Option(_)
-            | Self::Recording(..) => ExitCode::from(2),
-            Self::OtherRun(_)
-            | Self::NotThePlan(_)
+            | Self::Invalid(..)
+            | Self::Option(_) => ExitCode::from(2),
+            Self::Check(_)
             | Self::Violations(_)
             | Self::NoSteps
             | Self::NotRealTime(..)
             | Self::NotRecorded(..)
-            | Self::NotVerified(_)
             | Self::WrongSteps(_)
             | Self::SilentlyWrong(_) => ExitCode::from(3),
         }
@@ -172,7 +170,7 @@ pub(crate) fn no_plant(path: &Path) -> Failure {
     Failure::Scenario(path.to_owned(), vec![problem])
 }
 
-/// The problem, and for an unknown field the name that it is most like.
+/// The problem; for an unknown field, with the most similar name.
 pub(crate) fn with_hint(problem: &Problem) -> String {
     let text = problem.to_string();
     let Some((_, names)) = text.rsplit_once("unknown field; use one of ") else { return text };
@@ -256,17 +254,13 @@ impl fmt::Display for Failure {
                 Escaped::path(path)
             ),
             Self::Index(path, index) => write!(f, "{}: {index}", Escaped::path(path)),
-            Self::Table(path, what) | Self::Recording(path, what) => {
-                write!(f, "{}: {what}", Escaped::path(path))
-            }
-            Self::PartOnly(path, why) => write!(
+            Self::Invalid(path, why) => write!(f, "{}: {why}", Escaped::path(path)),
+            Self::Truncated(path, why) => write!(
                 f,
                 "{}: the recording is truncated: {why}; the results cover the part before",
                 Escaped::path(path)
             ),
-            Self::OtherRun(why) | Self::NotThePlan(why) | Self::Option(why) | Self::NotVerified(why) => {
-                f.write_str(why)
-            }
+            Self::Check(why) | Self::Option(why) => f.write_str(why),
             Self::Port(name, why) => write!(f, "{}: {why}", Escaped(name)),
             Self::LostPort(why) => write!(f, "the port was lost: {why}"),
             Self::NotRealTime(count, ms) => {

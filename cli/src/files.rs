@@ -5,49 +5,49 @@ use std::{
     io::{self, Write},
     path::PathBuf,
 };
-use stepscope_core::inspect::packets::log::PacketLog;
 use stepscope_core::{
     inspect::{
         export::{
             tables::{write_edges_head, write_edges_row},
             vcd::{Timescale, VcdWriter},
         },
-        packets::packet_table::PacketTable,
+        packets::{log::PacketLog, packet_table::PacketTable},
         trace::{fingerprint::Fingerprinter, timing::TimingCheck},
     },
     peripheral::{
         signal::{Event, Record, Sink},
-        trace::{Digest, write_record},
+        trace::{self, Digest},
         units::Instant,
     },
     sim::{Experiment, Run},
 };
 
-/// A sink that writes a file and is finished after the run.
+/// A sink that writes a file during the run and completes it afterwards.
 pub(crate) trait Output: Sink {
     fn has_failed(&self) -> bool {
         false
     }
 
-    /// Writes the rest; returns the first error so far.
+    /// Writes what remains; returns the first error of the file.
     fn finish(self: Box<Self>, experiment: &Experiment, run: &Run) -> io::Result<()>;
 }
 
-struct Lines<F> {
+/// Writes a line per record.
+struct RecordWriter<F> {
     out: Out,
-    line: F,
+    write_record: F,
     result: io::Result<()>,
 }
 
-impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Sink for Lines<F> {
+impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Sink for RecordWriter<F> {
     fn record(&mut self, record: Record) {
         if self.result.is_ok() {
-            self.result = (self.line)(&mut self.out, record);
+            self.result = (self.write_record)(&mut self.out, record);
         }
     }
 }
 
-impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Output for Lines<F> {
+impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Output for RecordWriter<F> {
     fn has_failed(&self) -> bool {
         self.result.is_err()
     }
@@ -59,24 +59,24 @@ impl<F: FnMut(&mut Out, Record) -> io::Result<()>> Output for Lines<F> {
 
 pub(crate) fn trace(out: Out) -> Box<dyn Output> {
     let mut text = String::new();
-    let line = move |out: &mut Out, record| {
+    let write_record = move |out: &mut Out, record| {
         text.clear();
-        write_record(&mut text, record).map_err(io::Error::other)?;
+        trace::write_record(&mut text, record).map_err(io::Error::other)?;
         out.write_all(text.as_bytes())
     };
-    Box::new(Lines { out, line, result: Ok(()) })
+    Box::new(RecordWriter { out, write_record, result: Ok(()) })
 }
 
 pub(crate) fn csv(mut out: Out, clock_hz: u32, channels: u8) -> io::Result<Box<dyn Output>> {
     let mut text = String::new();
     write_edges_head(&mut text, channels).map_err(io::Error::other)?;
     out.write_all(text.as_bytes())?;
-    let line = move |out: &mut Out, record: Record| {
+    let write_record = move |out: &mut Out, record: Record| {
         text.clear();
         write_edges_row(&mut text, record, clock_hz, channels).map_err(io::Error::other)?;
         out.write_all(text.as_bytes())
     };
-    Ok(Box::new(Lines { out, line, result: Ok(()) }))
+    Ok(Box::new(RecordWriter { out, write_record, result: Ok(()) }))
 }
 
 pub(crate) fn vcd(
@@ -135,21 +135,22 @@ impl Output for Packets {
 
 pub(crate) type Files = Vec<(PathBuf, Box<dyn Output>)>;
 
+/// What is recorded of one controller during a run.
 #[derive(Default)]
-pub(crate) struct Station {
+pub(crate) struct ControllerOutputs {
     pub(crate) digest: Digest,
     pub(crate) fingerprint: Option<Fingerprinter>,
     pub(crate) files: Files,
     pub(crate) timing: Option<TimingCheck>,
 }
 
-impl Station {
+impl ControllerOutputs {
     pub(crate) fn has_failed(&self) -> bool {
         self.files.iter().any(|(_, file)| file.has_failed())
     }
 }
 
-impl Sink for Station {
+impl Sink for ControllerOutputs {
     fn record(&mut self, record: Record) {
         self.digest.record(record);
         self.fingerprint.record(record);

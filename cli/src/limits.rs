@@ -13,7 +13,7 @@ use crate::{
 use clap::Args;
 use serde_json::json;
 use std::{
-    io::Write,
+    io::{self, Write},
     num::NonZero,
     path::{Path, PathBuf},
 };
@@ -22,7 +22,7 @@ use stepscope_core::{
     plant::{
         Refused,
         parameters::{MotorModel, Setup},
-        rates::{RAMP_STEPS_S2, Resonance, pulls, resonance as resonance_of, search, starts},
+        rates::{RAMP_STEPS_S2, pulls, resonance as resonance_of, search, starts},
         settling::StepResponse,
     },
     scenario::{Cause, Problem, Scenario},
@@ -92,15 +92,24 @@ pub(crate) struct ResonanceArguments {
 const _: () = assert!(RAMP_STEPS_S2 == 200_000.0);
 
 const MAX_RATES: f64 = 100_000.0;
+/// Step periods for which the current is observed.
+const OBSERVED_PERIODS: u64 = 11;
 
-/// A motor with a supply of its own, and all channels with an equal motor.
+/// A motor with its own supply, and all channels with an equal motor.
 struct SingleMotor {
     channels: Vec<usize>,
     setup: Setup,
 }
 
+/// Maximum rates in steps/s; `None` below 500.
+struct MotorLimits<'a> {
+    motor: &'a SingleMotor,
+    start_stop: Option<f64>,
+    pull_out: Option<f64>,
+}
+
 /// The distinct motors of the first controller's plant.
-fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), Failure> {
+fn distinct_motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), Failure> {
     let path = &common.scenario;
     let (scenario, experiment) = common.replacing.validated(path)?;
     let plants = experiment.plants().ok_or_else(|| no_plant(path))?;
@@ -109,129 +118,129 @@ fn motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), F
     if let Some(channel) = common.channel.filter(|&channel| channel >= count) {
         return Err(Failure::index(path, Numbered::Channels, channel, count, true));
     }
-    let mut found: Vec<SingleMotor> = Vec::new();
-    for (channel, motor) in setup.motors.iter().enumerate() {
+    let mut motors: Vec<SingleMotor> = Vec::new();
+    for (channel, model) in setup.motors.iter().enumerate() {
         if common.channel.is_some_and(|only| only != channel) {
             continue;
         }
-        match found.iter_mut().find(|alone| alone.setup.motors.first() == Some(motor)) {
-            Some(alone) => alone.channels.push(channel),
-            None => {
-                found.extend(
-                    setup.single_motor(channel).map(|setup| SingleMotor { channels: vec![channel], setup }),
-                );
-            }
+        if let Some(equal) = motors.iter_mut().find(|motor| motor.setup.motors.first() == Some(model)) {
+            equal.channels.push(channel);
+        } else if let Some(setup) = setup.single_motor(channel) {
+            motors.push(SingleMotor { channels: vec![channel], setup });
         }
     }
-    Ok((Scenario::clone(&scenario), Experiment::clone(&experiment), found))
+    Ok((Scenario::clone(&scenario), Experiment::clone(&experiment), motors))
 }
 
-fn on_threads<T: Send>(
+/// Runs `count` jobs on all cores; returns their results in order.
+fn in_parallel<T: Send>(
     common: &Common,
-    (what, unit): (&'static str, &str),
+    (command, unit): (&'static str, &str),
     count: usize,
-    job: impl Fn(usize) -> T + Sync,
+    job: impl Fn(usize) -> Result<T, Vec<Refused>> + Sync,
 ) -> Result<Vec<T>, Failure> {
-    let mut progress = Progress::new(what, common.work.show.progress);
-    let done = parallel::each(count as u64, common.work.threads, &mut progress, |index| job(index as usize))
-        .map_err(Failure::threads)?;
+    let mut progress = Progress::new(command, common.work.show.progress);
+    let results =
+        parallel::each(count as u64, common.work.threads, &mut progress, |index| job(index as usize))
+            .map_err(Failure::threads)?;
     progress.end(format_args!("{count} {unit}"), &[]);
-    Ok(done)
+    results.into_iter().collect::<Result<_, _>>().map_err(|refused| {
+        let problems = refused.into_iter().map(|refused| Problem::new("plant", Cause::Plant(refused)));
+        Failure::Scenario(common.scenario.clone(), problems.collect())
+    })
 }
 
-fn refused(path: &Path, refused: Vec<Refused>) -> Failure {
-    let problem = |refused| Problem::new("plant", Cause::Plant(refused));
-    Failure::Scenario(path.to_owned(), refused.into_iter().map(problem).collect())
-}
-
-fn wrong_option(path: &Path, what: &str) -> Failure {
-    Failure::Table(path.to_owned(), what.to_owned())
-}
-
-fn channels(alone: &SingleMotor) -> String {
-    let all: Vec<String> = alone.channels.iter().map(usize::to_string).collect();
-    all.join(", ")
+fn channel_list(motor: &SingleMotor) -> String {
+    motor.channels.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
 }
 
 pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
-    let (common, path) = (&arguments.common, &arguments.common.scenario);
+    let common = &arguments.common;
     let share = arguments.share.get();
-    let to_standard = arguments.write_scenario.as_deref() == Some(Path::new(output::STANDARD));
-    let (mut scenario, experiment, motors) = motors(common)?;
-    let slot = experiment.config().tick().0 / u64::from(experiment.config().slots());
+    let (mut scenario, experiment, motors) = distinct_motors(common)?;
+    let config = experiment.config();
+    let slot = config.tick().0 / u64::from(config.slots());
     let t_step = arguments.t_step.map_or(slot, |cycles| cycles.get().into());
-    // A step is observed for 11 T_step; all samples are kept.
-    for SingleMotor { setup, .. } in &motors {
-        let grid = u64::from(setup.grid_cycles());
-        if t_step < grid || 11 * t_step / grid > MAX_SAMPLES {
-            let most = MAX_SAMPLES * grid / 11;
-            let what = format!("--t-step: {t_step} cycles are out of range; use {grid} to {most}");
-            return Err(wrong_option(path, &what));
-        }
-    }
-    let all = on_threads(common, ("settling", "motors"), motors.len(), |index| {
-        let alone = motors.get(index).ok_or_else(Vec::new)?;
-        settling_of(&alone.setup, 0, t_step, share).map(|(found, _)| found)
+    check_step_period(&common.scenario, &motors, t_step)?;
+    let responses = in_parallel(common, ("settling", "motors"), motors.len(), |index| {
+        let motor = motors.get(index).ok_or_else(Vec::new)?;
+        settling_of(&motor.setup, 0, t_step, share).map(|(response, _)| response)
     })?;
-    let all: Vec<StepResponse> =
-        all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
     if let Some(file) = &arguments.write_scenario {
-        let greatest = all.iter().map(|response| response.reached).max().flatten();
-        let settled = all.iter().all(|response| response.reached.is_some());
-        // Like the self-test: T_step if a channel does not settle.
-        let cycles = greatest.filter(|_| settled).unwrap_or(t_step);
-        scenario.bus.settle_cycles = u32::try_from(cycles).unwrap_or(u32::MAX);
+        scenario.bus.settle_cycles = settle_cycles(&responses, t_step);
         let text = scenario_file::text(file, &scenario, "use a shorter scenario")?;
         output::write_new(file, |out| out.write_all(text.as_bytes()))?;
+        if file == Path::new(output::STANDARD) {
+            return Ok(());
+        }
     }
-    if to_standard {
-        return Ok(());
+    let rows = motors.iter().zip(&responses);
+    if !common.json.json {
+        return print_settling(rows, config.clock_hz()).map_err(Failure::output);
     }
-    let clock_hz = f64::from(experiment.config().clock_hz());
-    if common.json.json {
-        let rows = motors.iter().zip(&all).flat_map(|(alone, found)| {
-            alone.channels.iter().map(move |channel| {
-                json!({
-                    "channel": channel, "t_step_cycles": t_step, "share": share, "rest_a": found.rest_a,
-                    "least_a": found.min_a, "greatest_a": found.max_a, "reached_cycles": found.reached,
-                    "settled_cycles": found.settled,
-                })
+    let rows = rows.flat_map(|(motor, response)| {
+        motor.channels.iter().map(move |channel| {
+            json!({
+                "channel": channel, "t_step_cycles": t_step, "share": share, "rest_a": response.rest_a,
+                "least_a": response.min_a, "greatest_a": response.max_a,
+                "reached_cycles": response.reached, "settled_cycles": response.settled,
             })
-        });
-        return Tables::of("settling").with("settling", rows).print();
-    }
-    let mut out = terminal::out();
-    let time = |cycles: Option<u64>| {
-        cycles.map_or_else(
-            || "not within the observed time".to_owned(),
-            |cycles| format!("{:.4} ms, {cycles} cycles", cycles as f64 / clock_hz * 1e3),
-        )
-    };
-    for (alone, found) in motors.iter().zip(&all) {
-        writeln!(
-            out,
-            "motor {}: {:.4} A at rest, {:.3} to {:.3} A after a step\n  reached  {}\n  settled  {}",
-            channels(alone),
-            found.rest_a,
-            found.min_a,
-            found.max_a,
-            time(found.reached),
-            time(found.settled)
-        )
-        .map_err(Failure::output)?;
+        })
+    });
+    Tables::of("settling").with("settling", rows).print()
+}
+
+/// A step is observed for 11 step periods, and all samples are stored.
+fn check_step_period(path: &Path, motors: &[SingleMotor], t_step: u64) -> Result<(), Failure> {
+    for SingleMotor { setup, .. } in motors {
+        let grid = u64::from(setup.grid_cycles());
+        let max = MAX_SAMPLES * grid / OBSERVED_PERIODS;
+        if !(grid..=max).contains(&t_step) {
+            let why = format!("--t-step: {t_step} cycles are out of range; use {grid} to {max}");
+            return Err(Failure::Invalid(path.to_owned(), why));
+        }
     }
     Ok(())
 }
 
+/// The longest settling time. Like the self-test of the device, it is the step period if a channel does not settle.
+fn settle_cycles(responses: &[StepResponse], t_step: u64) -> u32 {
+    let reached: Option<Vec<u64>> = responses.iter().map(|response| response.reached).collect();
+    let cycles = reached.and_then(|cycles| cycles.into_iter().max()).unwrap_or(t_step);
+    u32::try_from(cycles).unwrap_or(u32::MAX)
+}
+
+fn print_settling<'a>(
+    mut rows: impl Iterator<Item = (&'a SingleMotor, &'a StepResponse)>,
+    clock_hz: u32,
+) -> io::Result<()> {
+    let time = |cycles: Option<u64>| match cycles {
+        Some(cycles) => format!("{:.4} ms, {cycles} cycles", cycles as f64 / f64::from(clock_hz) * 1e3),
+        None => "not within the observed time".to_owned(),
+    };
+    let mut out = terminal::out();
+    rows.try_for_each(|(motor, response)| {
+        writeln!(
+            out,
+            "motor {}: {:.4} A at rest, {:.3} to {:.3} A after a step\n  reached  {}\n  settled  {}",
+            channel_list(motor),
+            response.rest_a,
+            response.min_a,
+            response.max_a,
+            time(response.reached),
+            time(response.settled)
+        )
+    })
+}
+
 pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
-    let (common, path) = (&arguments.common, &arguments.common.scenario);
+    let common = &arguments.common;
     let ramp = arguments.ramp.get();
-    let (_, _, motors) = motors(common)?;
+    let (_, _, motors) = distinct_motors(common)?;
     let turn = |setup: &Setup| setup.motors.first().map_or(1, MotorModel::steps_per_turn);
     // The pull-out rates take longer, so they come first.
-    let all = on_threads(common, ("limits", "searches"), 2 * motors.len(), |index| {
-        let Some(alone) = motors.get(index / 2) else { return Ok(None) };
-        let setup = &alone.setup;
+    let rates = in_parallel(common, ("limits", "searches"), 2 * motors.len(), |index| {
+        let Some(SingleMotor { setup, .. }) = motors.get(index / 2) else { return Ok(None) };
         let steps = arguments.steps.map_or_else(|| turn(setup), NonZero::get);
         if index % 2 == 0 {
             search(|rate| pulls(setup, rate, ramp))
@@ -239,34 +248,30 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
             search(|rate| starts(setup, rate, steps))
         }
     })?;
-    let all: Vec<Option<f64>> =
-        all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
-    let rows: Vec<(&SingleMotor, Option<f64>, Option<f64>)> = motors
-        .iter()
-        .zip(all.chunks(2))
-        .map(|(alone, pair)| (alone, pair.get(1).copied().flatten(), pair.first().copied().flatten()))
-        .collect();
+    let rows = motors.iter().zip(rates.chunks(2)).map(|(motor, pair)| MotorLimits {
+        motor,
+        start_stop: pair.get(1).copied().flatten(),
+        pull_out: pair.first().copied().flatten(),
+    });
     if common.json.json {
-        let rows = rows.iter().flat_map(|(alone, start_stop, pull_out)| {
-            alone.channels.iter().map(move |channel| {
+        let rows = rows.flat_map(|MotorLimits { motor, start_stop, pull_out }| {
+            motor.channels.iter().map(move |channel| {
                 json!({ "channel": channel, "start_stop_steps_s": start_stop, "pull_out_steps_s": pull_out, "ramp_steps_s2": ramp })
             })
         });
         return Tables::of("limits").with("limits", rows).print();
     }
-    let rate = |found: Option<f64>| {
-        found.map_or_else(|| "below 500 steps/s".to_owned(), |rate| format!("{rate:.0} steps/s"))
+    let rate = |rate: Option<f64>| {
+        rate.map_or_else(|| "below 500 steps/s".to_owned(), |rate| format!("{rate:.0} steps/s"))
     };
     let mut out = terminal::out();
-    for (alone, start_stop, pull_out) in rows {
-        let text = format!(
-            "motor {}\n  start-stop rate  {}\n  pull-out rate    {}, by a ramp of {} steps/s^2\n",
-            channels(alone),
-            rate(start_stop),
-            rate(pull_out),
-            ramp
-        );
-        out.write_all(text.as_bytes()).map_err(Failure::output)?;
+    for MotorLimits { motor, start_stop, pull_out } in rows {
+        let (channels, start_stop, pull_out) = (channel_list(motor), rate(start_stop), rate(pull_out));
+        writeln!(
+            out,
+            "motor {channels}\n  start-stop rate  {start_stop}\n  pull-out rate    {pull_out}, with a ramp of {ramp} steps/s^2"
+        )
+        .map_err(Failure::output)?;
     }
     Ok(())
 }
@@ -278,52 +283,48 @@ const MAX_MOTOR_STEPS: f64 = 1e10;
 const RATE_S: f64 = 0.6;
 
 pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
-    let (common, path) = (&arguments.common, &arguments.common.scenario);
+    let common = &arguments.common;
+    let invalid = |why: String| Failure::Invalid(common.scenario.clone(), why);
     let [from, to, step] = [arguments.from, arguments.to, arguments.step].map(Rate::get);
     let count = (to - from) / step + 1e-9;
     if !(to >= from && count < MAX_RATES) {
-        let what = format!(
+        return Err(invalid(format!(
             "--from {from} --to {to} --step {step}: out of range; use a --to of at least --from, and at most {MAX_RATES} rates"
-        );
-        return Err(wrong_option(path, &what));
+        )));
     }
-    let (_, _, motors) = motors(common)?;
+    let (_, _, motors) = distinct_motors(common)?;
     let rates: Vec<f64> = (0..=count as u64).map(|index| from + index as f64 * step).collect();
-    let points =
-        |alone: &SingleMotor| RATE_S * f64::from(alone.setup.clock_hz) / f64::from(alone.setup.grid_cycles());
+    let points = |SingleMotor { setup, .. }: &SingleMotor| {
+        RATE_S * f64::from(setup.clock_hz) / f64::from(setup.grid_cycles())
+    };
     let motor_steps = rates.len() as f64 * motors.iter().map(points).sum::<f64>();
     if motor_steps > MAX_MOTOR_STEPS {
-        let what = format!(
+        return Err(invalid(format!(
             "the map needs {motor_steps:.2e} motor steps, more than {MAX_MOTOR_STEPS:e}; use a larger --step, or one --channel"
-        );
-        return Err(wrong_option(path, &what));
+        )));
     }
-    let all = on_threads(common, ("resonance", "rates"), rates.len() * motors.len(), |index| {
-        let (alone, rate) = (motors.get(index / rates.len()), rates.get(index % rates.len()));
-        let (Some(alone), Some(rate)) = (alone, rate) else { return Err(Vec::new()) };
-        let microsteps = alone.setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
-        resonance_of(&alone.setup, rate * microsteps)
+    let points = in_parallel(common, ("resonance", "rates"), rates.len() * motors.len(), |index| {
+        let (motor, rate) = (motors.get(index / rates.len()), rates.get(index % rates.len()));
+        let (Some(SingleMotor { setup, .. }), Some(rate)) = (motor, rate) else { return Err(Vec::new()) };
+        let microsteps = setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
+        resonance_of(setup, rate * microsteps)
     })?;
-    let all: Vec<Resonance> =
-        all.into_iter().collect::<Result<_, _>>().map_err(|found| refused(path, found))?;
-    let rows = motors.iter().zip(all.chunks(rates.len())).flat_map(|(alone, found)| {
-        let rows = rates.iter().zip(found);
-        alone
-            .channels
-            .iter()
-            .flat_map(move |&channel| rows.clone().map(move |(rate, found)| (channel, rate, found)))
+    let rows = motors.iter().zip(points.chunks(rates.len())).flat_map(|(motor, points)| {
+        let of_channel = rates.iter().zip(points);
+        let channels = motor.channels.iter();
+        channels.flat_map(move |&channel| of_channel.clone().map(move |(rate, point)| (channel, rate, point)))
     });
     if common.json.json {
-        let rows = rows.map(|(channel, rate, found)| {
-            json!({ "channel": channel, "rate_full_steps_s": rate, "swing_full_steps": found.peak_to_peak, "loses_steps": found.loses_steps })
+        let rows = rows.map(|(channel, rate, point)| {
+            json!({ "channel": channel, "rate_full_steps_s": rate, "swing_full_steps": point.peak_to_peak, "loses_steps": point.loses_steps })
         });
         let tables = Tables::of("resonance").with("resonance", rows);
         return output::write_new(&arguments.out.out, |out| tables.write(out));
     }
     output::write_new(&arguments.out.out, |out| {
         writeln!(out, "channel,rate_full_steps_s,swing_full_steps,loses_steps")?;
-        for (channel, rate, found) in rows {
-            writeln!(out, "{channel},{rate},{},{}", found.peak_to_peak, u8::from(found.loses_steps))?;
+        for (channel, rate, point) in rows {
+            writeln!(out, "{channel},{rate},{},{}", point.peak_to_peak, u8::from(point.loses_steps))?;
         }
         Ok(())
     })

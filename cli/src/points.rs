@@ -39,7 +39,7 @@ enum UnitName {
 pub(crate) fn points(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.table;
     let points = points_of_table(&scenarios::text(path)?)
-        .map_err(|error| Failure::Table(path.clone(), error.to_string()))?;
+        .map_err(|error| Failure::Invalid(path.clone(), error.to_string()))?;
     let unit = match arguments.unit {
         UnitName::Steps => PointUnit::Steps,
         UnitName::Mm => PointUnit::Millimeters,

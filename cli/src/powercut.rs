@@ -10,10 +10,9 @@ use crate::{
     scenarios, terminal,
 };
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::{
     io::{self, Write},
-    num::NonZero,
     path::PathBuf,
 };
 use stepscope_core::{
@@ -26,9 +25,9 @@ use stepscope_core::{
     sim::power_cut::{PowerCuts, Tally, Wear, min_hold_up, tally, wear, with_memory},
 };
 
-/// Parts of the cuts; each starts its run again.
+/// Number of parallel parts; each part runs the scenario from its start.
 const PARTS: usize = 16;
-/// Byte times of a record if another byte is being written.
+/// Byte times to write a record while another byte is being written.
 const BYTE_TIMES: u64 = 17;
 
 #[derive(Args)]
@@ -53,52 +52,53 @@ pub(crate) struct Arguments {
     work: Work,
 }
 
-struct Row {
+/// A memory to compare; `note` describes its hold-up time.
+struct MemoryCase {
     policy: Policy,
     hold_up_cycles: u64,
-    what: &'static str,
+    note: &'static str,
+}
+
+struct Row {
+    memory: MemoryCase,
     tally: Tally,
 }
 
+struct WearRow {
+    policy: Policy,
+    controller: usize,
+    wear: Wear,
+}
+
 pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
-    let none = || Failure::NoStandAlone(arguments.scenario.clone());
+    let missing = || Failure::NoStandAlone(arguments.scenario.clone());
     let (_, experiment) = scenarios::validated_after(&arguments.scenario, |scenario| {
-        if matches!(scenario.source, Source::Standalone(_)) { Ok(()) } else { Err(none()) }
+        if matches!(scenario.source, Source::Standalone(_)) { Ok(()) } else { Err(missing()) }
     })?;
-    let checked = experiment.stand_alone().ok_or_else(none)?;
+    let setup = experiment.stand_alone().ok_or_else(missing)?;
     let cost = experiment.cost();
     if cost.is_over_budget() {
         return Err(Failure::LongRun(arguments.scenario.clone()));
     }
     let end = Instant(cost.end_cycle);
+    let memories = memories(setup);
+    // The search measures its maximum first, and then halves its range.
+    let searches = 1 + max_hold_up_cycles(setup).max(1).ilog2() as usize + 1;
+    let parts = memories.len() + searches;
+    let mut progress = Progress::new("powercut", arguments.work.show.progress).with_parts(parts);
     let mut rows = Vec::new();
-    let memories = memories(checked);
-    // The search halves its range, and begins with a measurement of its end.
-    let searches = 1 + most_hold_up(checked).max(1).ilog2() as usize + 1;
-    let mut progress =
-        Progress::new("powercut", arguments.work.show.progress).with_parts(memories.len() + searches);
-    for (policy, hold_up_cycles, what) in memories {
-        let one = with_memory(checked, policy, hold_up_cycles);
-        let cuts = PowerCuts::of(&one, end, arguments.cuts as usize, arguments.seed);
-        let tally = counted(&cuts, arguments.work.threads, &mut progress)?;
-        rows.push(Row { policy, hold_up_cycles, what, tally });
+    for memory in memories {
+        let setup = with_memory(setup, memory.policy, memory.hold_up_cycles);
+        let tally = count_outcomes(&setup, end, arguments, &mut progress)?;
+        rows.push(Row { memory, tally });
     }
-    let enough = least(checked, end, arguments, &mut progress)?;
+    let min_hold_up = find_min_hold_up(setup, end, arguments, &mut progress)?;
     progress.end(format_args!("{} cuts", rows.iter().map(|row| row.tally.cuts).sum::<u64>()), &[]);
-    let controllers = checked.controllers().len();
-    let worn: Vec<(Policy, usize, Wear)> = [Policy::PowerLoss, Policy::WriteAhead]
-        .into_iter()
-        .flat_map(|policy| (0..controllers).map(move |index| (policy, index)))
-        .map(|(policy, index)| {
-            let one = &checked.controllers()[index].memory;
-            let of_policy = with_memory(checked, policy, enough);
-            (policy, index, wear(&of_policy, end, index, 2 * one.slots, arguments.endurance))
-        })
-        .collect();
+    let wear = wear_rows(setup, end, min_hold_up, arguments.endurance);
     if arguments.json.json {
-        tables(&rows, enough, &worn).print()?;
+        tables(&rows, min_hold_up, &wear).print()?;
     } else {
-        print(&rows, enough, &worn, checked).map_err(Failure::output)?;
+        print(&rows, min_hold_up, &wear, setup).map_err(Failure::output)?;
     }
     match rows.iter().map(|row| row.tally.wrong).sum() {
         0 => Ok(()),
@@ -106,70 +106,85 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The compared memories: both policies, each without buffer, with one that is a cycle too short, with a sufficient
-/// one, and with the first controller's own.
-fn memories(checked: &CheckedSetup) -> Vec<(Policy, u64, &'static str)> {
-    let of = |one: &std::rc::Rc<Parameters>| BYTE_TIMES * u64::from(one.memory.byte_write_cycles) - 1;
-    let enough = checked.controllers().iter().map(of).max().unwrap_or(0);
-    let own = checked.controllers().first().map_or(0, |first| first.memory.hold_up_cycles);
-    let mut all = vec![
-        (Policy::PowerLoss, 0, "none"),
-        (Policy::PowerLoss, enough.saturating_sub(1), "17 byte times less two cycles"),
-        (Policy::PowerLoss, enough, "17 byte times less one cycle"),
-        (Policy::WriteAhead, 0, "none"),
+/// The compared memories: both policies without a buffer, `power_loss` also with one that is a cycle too short and with
+/// a sufficient one, and both with the buffer of controller 0.
+fn memories(setup: &CheckedSetup) -> Vec<MemoryCase> {
+    let record_cycles = |parameters: &std::rc::Rc<Parameters>| {
+        BYTE_TIMES * u64::from(parameters.memory.byte_write_cycles) - 1
+    };
+    let sufficient = setup.controllers().iter().map(record_cycles).max().unwrap_or(0);
+    let own = setup.controllers().first().map_or(0, |first| first.memory.hold_up_cycles);
+    let case = |policy, hold_up_cycles, note| MemoryCase { policy, hold_up_cycles, note };
+    let mut cases = vec![
+        case(Policy::PowerLoss, 0, "none"),
+        case(Policy::PowerLoss, sufficient.saturating_sub(1), "17 byte times less two cycles"),
+        case(Policy::PowerLoss, sufficient, "17 byte times less one cycle"),
+        case(Policy::WriteAhead, 0, "none"),
     ];
-    if all.iter().all(|&(_, hold_up, _)| hold_up != own) {
-        all.push((Policy::PowerLoss, own, "of controller 0"));
-        all.push((Policy::WriteAhead, own, "of controller 0"));
+    if cases.iter().all(|case| case.hold_up_cycles != own) {
+        cases.push(case(Policy::PowerLoss, own, "of controller 0"));
+        cases.push(case(Policy::WriteAhead, own, "of controller 0"));
     }
-    all
+    cases
 }
 
-fn counted(
-    cuts: &PowerCuts,
-    threads: Option<NonZero<usize>>,
+/// Cuts the power in parallel parts, and counts the outcomes.
+fn count_outcomes(
+    setup: &CheckedSetup,
+    end: Instant,
+    arguments: &Arguments,
     progress: &mut Progress,
 ) -> Result<Tally, Failure> {
+    let cuts = PowerCuts::of(setup, end, arguments.cuts as usize, arguments.seed);
     let cycles = cuts.cycles();
-    let part = cycles.len().div_ceil(PARTS).max(1);
-    let parts: Vec<&[u64]> = cycles.chunks(part).collect();
+    let parts: Vec<&[u64]> = cycles.chunks(cycles.len().div_ceil(PARTS).max(1)).collect();
     let setup: Setup = cuts.checked().setup();
-    let each = |index: u64| {
+    let tally_part = |index: u64| {
         let checked = setup.clone().check();
         checked.map_or_else(|_| Tally::default(), |checked| tally(&checked, parts[index as usize]))
     };
-    let tallies = parallel::each(parts.len() as u64, threads, progress, each).map_err(Failure::threads)?;
+    let tallies = parallel::each(parts.len() as u64, arguments.work.threads, progress, tally_part)
+        .map_err(Failure::threads)?;
     progress.next_part();
-    let mut whole = Tally::default();
-    tallies.iter().for_each(|tally| whole.join(tally));
-    Ok(whole)
+    let mut total = Tally::default();
+    tallies.iter().for_each(|tally| total.join(tally));
+    Ok(total)
 }
 
-/// The shortest sufficient hold-up time of the policy `power_loss`, up to 18 byte times.
-fn least(
-    checked: &CheckedSetup,
+/// The minimum sufficient hold-up time of the policy `power_loss`, in cycles, up to 18 byte times.
+fn find_min_hold_up(
+    setup: &CheckedSetup,
     end: Instant,
     arguments: &Arguments,
     progress: &mut Progress,
 ) -> Result<u64, Failure> {
-    let mut failed = None;
-    let losses = |one: &CheckedSetup| {
-        let cuts = PowerCuts::of(one, end, arguments.cuts as usize, arguments.seed);
-        match counted(&cuts, arguments.work.threads, progress) {
-            Ok(tally) => tally.lost,
-            Err(failure) => {
-                failed = Some(failure);
-                0
-            }
+    let mut failure = None;
+    let losses = |setup: &CheckedSetup| match count_outcomes(setup, end, arguments, progress) {
+        Ok(tally) => tally.lost,
+        Err(error) => {
+            failure = Some(error);
+            0
         }
     };
-    let enough = min_hold_up(checked, most_hold_up(checked), losses);
-    failed.map_or(Ok(enough), Err)
+    let cycles = min_hold_up(setup, max_hold_up_cycles(setup), losses);
+    failure.map_or(Ok(cycles), Err)
 }
 
-fn most_hold_up(checked: &CheckedSetup) -> u64 {
-    let longest = checked.controllers().iter().map(|one| one.memory.byte_write_cycles).max().unwrap_or(1);
-    (BYTE_TIMES + 1) * u64::from(longest)
+fn max_hold_up_cycles(setup: &CheckedSetup) -> u64 {
+    let byte_write_cycles = setup.controllers().iter().map(|parameters| parameters.memory.byte_write_cycles);
+    (BYTE_TIMES + 1) * u64::from(byte_write_cycles.max().unwrap_or(1))
+}
+
+fn wear_rows(setup: &CheckedSetup, end: Instant, hold_up_cycles: u64, endurance: u32) -> Vec<WearRow> {
+    let mut rows = Vec::new();
+    for policy in [Policy::PowerLoss, Policy::WriteAhead] {
+        let setup = with_memory(setup, policy, hold_up_cycles);
+        for (controller, parameters) in setup.controllers().iter().enumerate() {
+            let wear = wear(&setup, end, controller, 2 * parameters.memory.slots, endurance);
+            rows.push(WearRow { policy, controller, wear });
+        }
+    }
+    rows
 }
 
 const fn name(policy: Policy) -> &'static str {
@@ -179,22 +194,17 @@ const fn name(policy: Policy) -> &'static str {
     }
 }
 
-fn print(
-    rows: &[Row],
-    enough: u64,
-    worn: &[(Policy, usize, Wear)],
-    checked: &CheckedSetup,
-) -> io::Result<()> {
+fn print(rows: &[Row], min_hold_up: u64, wear_rows: &[WearRow], setup: &CheckedSetup) -> io::Result<()> {
     let mut out = terminal::out();
     writeln!(
         out,
         "{:<12} {:>14} {:>9} {:>9} {:>9} {:>12} {:>9} {:>15}",
         "policy", "hold-up", "cuts", "known", "lost", "never known", "old zero", "silently wrong"
     )?;
-    for Row { policy, hold_up_cycles, what, tally } in rows {
+    for Row { memory: MemoryCase { policy, hold_up_cycles, note }, tally } in rows {
         writeln!(
             out,
-            "{:<12} {hold_up_cycles:>14} {:>9} {:>9} {:>9} {:>12} {:>9} {:>15}  {what}",
+            "{:<12} {hold_up_cycles:>14} {:>9} {:>9} {:>9} {:>12} {:>9} {:>15}  {note}",
             name(*policy),
             tally.cuts,
             tally.known,
@@ -204,13 +214,16 @@ fn print(
             tally.wrong
         )?;
     }
-    let w = checked.controllers().first().map_or(1, |first| u64::from(first.memory.byte_write_cycles));
-    let bytes = (enough + 1) as f64 / w as f64;
-    writeln!(out, "minimum hold-up {enough} cycles, {bytes} byte times less one cycle (power_loss)")?;
-    for (policy, index, wear) in worn {
+    let byte_time = setup.controllers().first().map_or(1, |first| first.memory.byte_write_cycles);
+    let byte_times = (min_hold_up + 1) as f64 / f64::from(byte_time);
+    writeln!(
+        out,
+        "minimum hold-up {min_hold_up} cycles, {byte_times} byte times less one cycle (power_loss)"
+    )?;
+    for WearRow { policy, controller, wear } in wear_rows {
         write!(
             out,
-            "controller {index} {}: most worn cell {} writes per power cycle",
+            "controller {controller} {}: most worn cell {} writes per power cycle",
             name(*policy),
             wear.writes_a_cycle
         )?;
@@ -220,11 +233,11 @@ fn print(
     Ok(())
 }
 
-fn tables(rows: &[Row], enough: u64, worn: &[(Policy, usize, Wear)]) -> Tables {
+fn tables(rows: &[Row], min_hold_up: u64, wear_rows: &[WearRow]) -> Tables {
     let cuts = rows.iter().map(|row| {
         json!({
-            "policy": name(row.policy),
-            "hold_up_cycles": row.hold_up_cycles,
+            "policy": name(row.memory.policy),
+            "hold_up_cycles": row.memory.hold_up_cycles,
             "cuts": row.tally.cuts,
             "known": row.tally.known,
             "lost": row.tally.lost,
@@ -235,14 +248,14 @@ fn tables(rows: &[Row], enough: u64, worn: &[(Policy, usize, Wear)]) -> Tables {
             "first_wrong_cycle": row.tally.first_wrong.map(|at| at.0),
         })
     });
-    let wear = worn.iter().map(|(policy, index, wear)| {
+    let wear = wear_rows.iter().map(|WearRow { policy, controller, wear }| {
         json!({
             "policy": name(*policy),
-            "controller": index,
+            "controller": controller,
             "writes_a_power_cycle": wear.writes_a_cycle,
             "life_power_cycles": wear.life_power_cycles,
         })
     });
-    let least: Vec<Value> = vec![json!({ "policy": "power_loss", "least_hold_up_cycles": enough })];
-    Tables::of("powercut").with("cuts", cuts).with("hold_up", least).with("wear", wear)
+    let hold_up = [json!({ "policy": "power_loss", "least_hold_up_cycles": min_hold_up })];
+    Tables::of("powercut").with("cuts", cuts).with("hold_up", hold_up).with("wear", wear)
 }

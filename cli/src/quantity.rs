@@ -61,6 +61,11 @@ fn number(text: &str, from: f64, to: f64, unit: &str) -> Result<f64, String> {
     }
 }
 
+/// The `value_parser` of a type whose errors are messages.
+pub(crate) fn parsed<T: FromStr<Err = &'static str>>(text: &str) -> Result<T, String> {
+    text.parse().map_err(str::to_owned)
+}
+
 /// The `value_parser` of an integer. `range` has no maximum if the number is checked later.
 pub(crate) fn whole<T: FromStr>(
     range: RangeInclusive<u64>,

@@ -2,16 +2,17 @@
 
 use crate::{
     failure::{Failure, Numbered},
-    files::{self, Files, Output, Station},
+    files::{self, ControllerOutputs, Files, Output},
     json::Tables,
     line,
     options::{Json, ShowProgress},
     output::{Out, Outputs},
     panel,
     progress::Progress,
-    quantity::whole,
+    quantity::{parsed, whole},
     scenarios, status, terminal,
     timing::{self, TimeUnit},
+    verify,
 };
 use clap::Args;
 use serde_json::json;
@@ -23,7 +24,7 @@ use stepscope_core::{
     controller::{CheckedSetup, StandAlone},
     inspect::{
         export::vcd::Timescale,
-        trace::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
+        trace::{fingerprint::Fingerprinter, timing::TimingCheck},
     },
     peripheral::config::Config,
     scenario::{Cause, Problem, Scenario, Source, link},
@@ -60,7 +61,7 @@ pub(crate) struct Arguments {
     ///
     /// It must not exceed one cycle, so that the dump is exact: time t is cycle round(t*clock). The dump's header has
     /// the clock.
-    #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = timescale)]
+    #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = parsed::<Timescale>)]
     vcd_timescale: Timescale,
     /// Write a table of the signals (CSV): cycle, time in s, one level per signal
     #[arg(long, value_name = "FILE")]
@@ -92,10 +93,6 @@ pub(crate) struct Arguments {
     timing: timing::Options,
 }
 
-fn timescale(text: &str) -> Result<Timescale, String> {
-    text.parse().map_err(str::to_owned)
-}
-
 impl Arguments {
     const fn writes_a_file(&self) -> bool {
         self.trace.is_some()
@@ -120,91 +117,106 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         timing = arguments.timing.check(path, scenario)?;
         Ok(())
     })?;
-    let controllers = experiment.controllers();
-    let chosen = arguments.controller.unwrap_or(0);
-    let config = experiment.configs().nth(chosen);
-    let config =
-        config.ok_or_else(|| Failure::index(path, Numbered::Controllers, chosen, controllers, true))?;
-
-    let mut stations: Vec<Station> = (0..controllers).map(|_| Station::default()).collect();
-    if let Some(station) = stations.get_mut(chosen) {
-        station.timing = timing;
-        station.files = open(arguments, &mut outputs, chosen, config, experiment.stand_alone())?;
-    }
-    if arguments.link {
-        stations.iter_mut().for_each(|station| station.fingerprint = Some(Fingerprinter::default()));
-    }
+    let mut controllers = open_all(arguments, &mut outputs, &experiment, timing)?;
     let mut create = |path: &Option<PathBuf>| path.as_ref().map(|path| outputs.create(path)).transpose();
     let (line, violations) = (create(&arguments.line)?, create(&arguments.timing.violations)?);
-    for warned in experiment.stand_alone().iter().flat_map(|controllers| controllers.warnings()) {
-        let _ = writeln!(terminal::err(), "warning: {warned}");
+    for warning in experiment.stand_alone().iter().flat_map(|setup| setup.warnings()) {
+        let _ = writeln!(terminal::err(), "warning: {warning}");
     }
     let mut progress = Progress::new("run", arguments.show.progress);
-    let finished = go(&experiment, &mut stations, &mut progress);
+    let finished = simulate(&experiment, &mut controllers, &mut progress);
     if let Some(work) = finished.stand_alone().and_then(StandAlone::too_many_groups) {
         let at = format!("source.standalone[{}].groups", work.controller);
         return Err(Failure::Scenario(path.clone(), vec![Problem::new(at, Cause::TooManyGroups(work))]));
     }
-    let mut timing = None;
-    for station in &mut stations {
-        timing = timing.or(station.timing.take());
-        for (path, file) in station.files.drain(..) {
-            file.finish(&experiment, &finished).map_err(|error| Failure::File(path, error))?;
-        }
+    for (path, file) in controllers.iter_mut().flat_map(|controller| controller.files.drain(..)) {
+        file.finish(&experiment, &finished).map_err(|error| Failure::File(path, error))?;
     }
     if let Some(file) = arguments.line.as_deref().zip(line) {
         line::write(file, Scenario::clone(&scenario), &experiment, &finished)?;
     }
+    let unit = TimeUnit::of_cycles(scenario.clock_hz);
+    let timing = controllers.iter_mut().find_map(|controller| controller.timing.take());
     if let (Some(path), Some(out), Some(timing)) = (&arguments.timing.violations, violations, &timing) {
-        let written = timing::write_violations(out, timing, TimeUnit::of_cycles(scenario.clock_hz));
+        let written = timing::write_violations(out, timing, unit);
         written.map_err(|error| Failure::File(path.clone(), error))?;
     }
     let written = outputs.commit()?;
-    let records: u64 = stations.iter().map(|station| station.digest.records()).sum();
+    let records: u64 = controllers.iter().map(|controller| controller.digest.records()).sum();
     progress.end(format_args!("{records} records, {} cycles", finished.cycles().0), &written);
 
-    let summary = Summary::new(&experiment, &finished, stations.iter().map(|station| &station.digest));
-    let summary = match arguments.controller {
-        Some(controller) => summary.only(controller),
-        None => summary,
+    let digests = controllers.iter().map(|controller| &controller.digest);
+    let mut summary = Summary::new(&experiment, &finished, digests);
+    if let Some(controller) = arguments.controller {
+        summary = summary.only(controller);
+    }
+    let link = if arguments.link { Some(link_of(&scenario, &mut controllers)?) } else { None };
+    report(arguments, &summary, timing.as_ref().map(|timing| (timing, unit)), link.as_deref())?;
+    timing.map_or(Ok(()), |timing| arguments.timing.result(&timing))
+}
+
+/// The outputs of each controller; files and timing are those of the selected one.
+fn open_all(
+    arguments: &Arguments,
+    outputs: &mut Outputs,
+    experiment: &Experiment,
+    timing: Option<TimingCheck>,
+) -> Result<Vec<ControllerOutputs>, Failure> {
+    let count = experiment.controllers();
+    let selected = arguments.controller.unwrap_or(0);
+    let mut controllers: Vec<_> = (0..count).map(|_| ControllerOutputs::default()).collect();
+    let (Some(config), Some(controller)) =
+        (experiment.configs().nth(selected), controllers.get_mut(selected))
+    else {
+        return Err(Failure::index(&arguments.scenario, Numbered::Controllers, selected, count, true));
     };
-    let link = if arguments.link { Some(link_of(&scenario, &mut stations)?) } else { None };
+    controller.timing = timing;
+    controller.files = open(arguments, outputs, selected, config, experiment.stand_alone())?;
+    if arguments.link {
+        for controller in &mut controllers {
+            controller.fingerprint = Some(Fingerprinter::default());
+        }
+    }
+    Ok(controllers)
+}
+
+fn report(
+    arguments: &Arguments,
+    summary: &Summary,
+    timing: Option<(&TimingCheck, TimeUnit)>,
+    link: Option<&str>,
+) -> Result<(), Failure> {
     if arguments.json.json {
-        let mut tables = status::tables(Tables::of("run"), &summary, chosen);
-        if let Some(timing) = &timing {
-            tables = timing::tables(tables, timing, TimeUnit::of_cycles(scenario.clock_hz));
+        let mut tables = status::tables(Tables::of("run"), summary, arguments.controller.unwrap_or_default());
+        if let Some((timing, unit)) = timing {
+            tables = timing::tables(tables, timing, unit);
         }
         if let Some(link) = link {
             tables = tables.with("links", [json!({ "link": format!("#{link}") })]);
         }
-        tables.print()?;
-    } else {
-        if let Some(link) = link {
-            writeln!(terminal::out(), "#{link}").map_err(Failure::output)?;
-        }
-        if arguments.digest && !arguments.status {
-            status::digests(&summary).map_err(Failure::output)?;
-        } else if arguments.status || !arguments.writes_a_file() {
-            status::print(&summary).map_err(Failure::output)?;
-        }
-        if let Some(timing) = &timing {
-            arguments.timing.report(timing, TimeUnit::of_cycles(scenario.clock_hz))?;
-        }
+        return tables.print();
     }
-    timing.map_or(Ok(()), |timing| arguments.timing.result(&timing))
+    if let Some(link) = link {
+        writeln!(terminal::out(), "#{link}").map_err(Failure::output)?;
+    }
+    if arguments.digest && !arguments.status {
+        status::digests(summary).map_err(Failure::output)?;
+    } else if arguments.status || !arguments.writes_a_file() {
+        status::print(summary).map_err(Failure::output)?;
+    }
+    timing.map_or(Ok(()), |(timing, unit)| arguments.timing.report(timing, unit))
 }
 
-fn link_of(scenario: &Scenario, stations: &mut [Station]) -> Result<String, Failure> {
+fn link_of(scenario: &Scenario, controllers: &mut [ControllerOutputs]) -> Result<String, Failure> {
     let link = link::encode(scenario).map_err(Failure::Link)?;
-    let seen = stations.iter_mut().filter_map(|station| station.fingerprint.take());
-    let proof = RunFingerprint::of(seen.map(Fingerprinter::finish).collect());
-    Ok(link::with_part(link, "d", &proof.emit()))
+    let traces = controllers.iter_mut().filter_map(|controller| controller.fingerprint.take());
+    Ok(verify::with_digests(link, traces))
 }
 
-fn go(experiment: &Experiment, stations: &mut [Station], progress: &mut Progress) -> Run {
+fn simulate(experiment: &Experiment, controllers: &mut [ControllerOutputs], progress: &mut Progress) -> Run {
     let mut run = experiment.start();
-    while !run.advance_each(SLICE, stations) {
-        if stations.iter().any(Station::has_failed) {
+    while !run.advance_each(SLICE, controllers) {
+        if controllers.iter().any(ControllerOutputs::has_failed) {
             return run;
         }
         progress.update(run.cycles().0, experiment.cost().end_cycle);

@@ -211,7 +211,7 @@ impl Axes {
         let pulse = PulseTimes::from(&config);
         if let Some(list) = &arguments.steps {
             let steps = steps_of_table(&scenarios::text(list)?, clock_hz)
-                .map_err(|what| Failure::Table(list.clone(), what))?;
+                .map_err(|what| Failure::Invalid(list.clone(), what))?;
             let title = list.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
             let axes = vec![Steps::Listed(steps)];
             return Ok(Self { path: list.clone(), title, clock_hz, pulse, axes, tolerance, search });
@@ -245,7 +245,7 @@ impl Axes {
 
     fn refused(&self, axis: usize, cause: Cause) -> Failure {
         if let Some(Steps::Listed(_)) = self.axes.get(axis) {
-            return Failure::Table(self.path.clone(), cause.to_string());
+            return Failure::Invalid(self.path.clone(), cause.to_string());
         }
         let problem = Problem::new(format!("source.motion.axes[{axis}]"), cause);
         Failure::Scenario(self.path.clone(), vec![problem])

@@ -1,10 +1,10 @@
 //! `stepscope torque`: compares available torque with the demand, and reports feasible ramps.
 
 mod arguments;
-mod driven;
-mod of_steps;
+mod axis_demand;
 pub(crate) mod tables;
 pub(crate) mod text;
+mod unplanned;
 
 use crate::{
     failure::{Failure, Numbered},
@@ -14,8 +14,8 @@ use crate::{
 };
 pub(crate) use arguments::Arguments;
 use arguments::Written;
-pub(crate) use driven::Driven;
-use driven::MotionSource;
+pub(crate) use axis_demand::AxisDemand;
+use axis_demand::MotionSource;
 use std::io::{self, Write};
 use stepscope_core::{
     inspect::{
@@ -38,27 +38,27 @@ pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
         scenario.plant.get_or_insert_default();
     }
     arguments.named.put_into(&mut scenario);
-    let mut driven = match &scenario.source {
+    let mut demands = match &scenario.source {
         Source::Motion(Motion { axes, .. }) => planned(arguments, axes)?,
-        _ => of_steps::driven(arguments, &scenario)?,
+        _ => unplanned::demands(arguments, &scenario)?,
     };
     if arguments.format == Written::Text {
-        compare_with_plant(arguments, scenario, &mut driven)?;
+        compare_with_plant(arguments, scenario, &mut demands)?;
     }
     output::write_new(&arguments.out.out, |out| match arguments.format {
-        _ if arguments.json.json => tables::tables(&driven).write(out),
-        Written::Text => driven.iter().try_for_each(|driven| text::report(driven, out)),
-        Written::Csv => driven.first().map_or(Ok(()), |driven| curve(driven, out)),
+        _ if arguments.json.json => tables::tables(&demands).write(out),
+        Written::Text => demands.iter().try_for_each(|demand| text::report(demand, out)),
+        Written::Csv => demands.first().map_or(Ok(()), |demand| curve(demand, out)),
     })
 }
 
 /// The selected axes with a motor: at least one.
-fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure> {
+fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<AxisDemand>, Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
     if arguments.named.microsteps.is_some() {
         let what = "--microsteps: the axes of a motion have their own microsteps; set them in the axis's mechanics, or omit the option";
-        return Err(Failure::Table(path.clone(), what.to_owned()));
+        return Err(Failure::Invalid(path.clone(), what.to_owned()));
     }
     let only = match (arguments.axis, arguments.format) {
         (None, Written::Csv) => Some(0),
@@ -88,7 +88,7 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
     let found = selected.filter_map(|(axis, (given, plan))| {
         let machine = Machine::of(given)?;
         let demand = Demand::of(&machine, &plan);
-        Some(Driven { axis, machine, source: MotionSource::Plan(plan), demand, agreement: None })
+        Some(AxisDemand { axis, machine, source: MotionSource::Plan(plan), demand, agreement: None })
     });
     Ok(found.collect())
 }
@@ -97,16 +97,16 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<Driven>, Failure>
 fn compare_with_plant(
     arguments: &Arguments,
     mut scenario: Scenario,
-    driven: &mut [Driven],
+    demands: &mut [AxisDemand],
 ) -> Result<(), Failure> {
     if scenario.plant.is_none() && !arguments.plant {
         return Ok(());
     }
     scenario.plant.get_or_insert_default();
     let mut not_run = |why: String| {
-        for driven in &mut *driven {
+        for demand in &mut *demands {
             let plant = format!("not run: {why}");
-            driven.agreement = Some(Agreement { plant, agrees: None, why: None });
+            demand.agreement = Some(Agreement { plant, agrees: None, why: None });
         }
         Ok(())
     };
@@ -134,18 +134,17 @@ fn compare_with_plant(
     let parts = run.into_parts();
     let setup = experiment.plants().and_then(|plants| plants.setups.first());
     if let (Some(setup), Some(result), Some((_, slips))) = (setup, results.first(), parts.first()) {
-        for Driven { axis, machine, demand, agreement: found, .. } in driven {
+        for AxisDemand { axis, machine, demand, agreement: found, .. } in demands {
             *found = Some(agreement(machine, demand, setup, *axis, result, overload, slips));
         }
     }
     Ok(())
 }
 
-fn curve(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
+fn curve(axis: &AxisDemand, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "rate_hz,available_mn_m")?;
-    let most = driven.machine.shown_rate(driven.demand.greatest_rate);
-    driven
-        .machine
+    let most = axis.machine.shown_rate(axis.demand.greatest_rate);
+    axis.machine
         .curve(most, POINTS)
         .try_for_each(|(rate, available)| writeln!(out, "{rate:.3},{available:.6}"))
 }

@@ -4,26 +4,32 @@ use crate::{failure::Failure, progress::Progress, terminal};
 use std::{io::Write, path::PathBuf};
 use stepscope_core::{
     inspect::trace::{
-        fingerprint::Shorter,
+        fingerprint::{Fingerprinter, Shorter},
         run_fingerprint::{RunFingerprint, VERSION, Verification},
     },
     peripheral::units::Instant,
-    scenario::Scenario,
+    scenario::{Scenario, link},
     sim::Experiment,
 };
 
 /// Records between progress reports.
 const SLICE: u64 = 1 << 16;
 
+/// Adds the digests of a run to the link of its scenario.
+pub(crate) fn with_digests(link: String, traces: impl Iterator<Item = Fingerprinter>) -> String {
+    let fingerprint = RunFingerprint::of(traces.map(Fingerprinter::finish).collect());
+    link::with_part(link, "d", &fingerprint.emit())
+}
+
 pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Failure> {
-    let proof = part.ok_or(Failure::NoDigests)?;
-    let proof = RunFingerprint::parse(proof).map_err(Failure::RunFingerprint)?;
+    let sent = part.ok_or(Failure::NoDigests)?;
+    let sent = RunFingerprint::parse(sent).map_err(Failure::RunFingerprint)?;
     let experiment = Experiment::new(scenario)
         .map_err(|problems| Failure::Scenario(PathBuf::from("the link"), problems))?;
-    let own = experiment.controllers();
-    let mut checks = proof.checks(own).map_err(|sent| {
-        Failure::OtherRun(format!(
-            "the link has digests of {sent} controllers, but its scenario has {own}; create the link again"
+    let controllers = experiment.controllers();
+    let mut checks = sent.checks(controllers).map_err(|count| {
+        Failure::Check(format!(
+            "the link has digests of {count} controllers, but its scenario has {controllers}; create the link again"
         ))
     })?;
     let mut progress = Progress::new("open", false);
@@ -36,7 +42,7 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
     let (controller, after, until, shorter) = match Verification::of(checks) {
         Verification::Same { edges } => {
             let digests: Vec<String> =
-                proof.controllers.iter().map(|fingerprint| format!("{:016x}", fingerprint.digest)).collect();
+                sent.controllers.iter().map(|fingerprint| format!("{:016x}", fingerprint.digest)).collect();
             // If standard error is closed, the exit code remains.
             let _ = writeln!(
                 terminal::err(),
@@ -48,16 +54,16 @@ pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Fail
         Verification::Differs { controller, after, until, shorter } => (controller, after, until, shorter),
     };
     let at = |cycle: Instant| format!("cycle {} ({} s)", cycle.0, cycle.seconds(clock_hz));
-    let controller = if own > 1 { format!(" of controller {controller}") } else { String::new() };
+    let controller = if controllers > 1 { format!(" of controller {controller}") } else { String::new() };
     let ends = match shorter {
         Some(Shorter::This) => "; this run ends there",
         Some(Shorter::Other) => "; the sender's run ends there",
         None => "",
     };
-    let version = proof.other_version().map_or_else(String::new, |version| {
+    let version = sent.other_version().map_or_else(String::new, |version| {
         format!("; the link was made with version {version}, this is version {VERSION}")
     });
-    Err(Failure::OtherRun(format!(
+    Err(Failure::Check(format!(
         "the run differs from the sender's: the first difference{controller} is between edge {}, {}, and edge {}, {}{ends}{version}",
         after.edges,
         at(after.cycle),

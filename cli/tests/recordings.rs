@@ -186,7 +186,7 @@ fn steps_of_any_channel_are_written_without_a_plan() {
     assert_ne!(of_second, capture(dump, &["--steps", "-"]).1);
     let (code, out, err) = capture(dump, &["--steps", "-", "--channel", "5"]);
     assert!(code == Some(2) && out.is_empty(), "{out}{err}");
-    assert!(err.contains("--channel: channel 5 has no steps; channels with steps: 0, 1"), "{err}");
+    assert!(err.contains("--channel: 5 has no steps; use one of 0, 1"), "{err}");
     let (code, _, err) = capture(dump, &["--channel", "1"]);
     assert!(code == Some(2) && err.contains("--against") && err.contains("--steps"), "{err}");
 }

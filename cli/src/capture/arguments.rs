@@ -5,7 +5,7 @@ use crate::{
     failure::Failure,
     motors::Named,
     options::{Json, ShowProgress},
-    quantity::{ExactMicroseconds, Microseconds, whole},
+    quantity::{ExactMicroseconds, Microseconds, parsed, whole},
     timing,
 };
 use clap::{ArgGroup, Args};
@@ -49,10 +49,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "BAUD", value_parser = whole::<u32>(1..=1_000_000_000))]
     pub(super) baud: Option<u32>,
     /// Data bits, parity and stop bits of RX and TX, such as 7E1 (default: 8N1)
-    #[arg(long, value_name = "FORMAT", value_parser = uart)]
+    #[arg(long, value_name = "FORMAT", value_parser = parsed::<uart::Format>)]
     pub(super) uart: Option<uart::Format>,
     /// Base of decoded bytes: hex, dec, oct or bin (default: by their digits)
-    #[arg(long, value_name = "BASE", value_parser = base)]
+    #[arg(long, value_name = "BASE", value_parser = parsed::<Base>)]
     pub(super) base: Option<Base>,
     /// Compare with the run of this scenario: a JSON file or a preset's name
     ///
@@ -103,7 +103,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     pub(super) vcd: Option<PathBuf>,
     /// Time unit of the dump: 1, 10 or 100 of s, ms, us, ns, ps or fs
-    #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = timescale)]
+    #[arg(long, value_name = "TIME", default_value = "1ns", requires = "vcd", value_parser = parsed::<Timescale>)]
     pub(super) vcd_timescale: Timescale,
     /// Write a table of the signals (CSV): cycle, time in s, one level per signal
     #[arg(long, value_name = "FILE")]
@@ -116,18 +116,6 @@ pub(crate) struct Arguments {
     pub(super) named: Named,
     #[command(flatten)]
     pub(super) timing: timing::Options,
-}
-
-fn base(text: &str) -> Result<Base, String> {
-    text.parse().map_err(str::to_owned)
-}
-
-fn uart(text: &str) -> Result<uart::Format, String> {
-    text.parse().map_err(str::to_owned)
-}
-
-fn timescale(text: &str) -> Result<Timescale, String> {
-    text.parse().map_err(str::to_owned)
 }
 
 impl Arguments {
@@ -163,7 +151,7 @@ impl Arguments {
         self.file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
     }
 
-    pub(super) fn cannot_open(&self, error: &OpenError) -> Failure {
+    pub(super) fn open_failure(&self, error: &OpenError) -> Failure {
         let option = match error {
             OpenError::NoSampleRate(_) => " (--sample-rate HZ)".to_owned(),
             OpenError::NoBaud => " (--baud BAUD)".to_owned(),
@@ -173,10 +161,10 @@ impl Arguments {
             OpenError::NoRate(_, remedies) => remedies.iter().map(advice::option).collect(),
             _ => String::new(),
         };
-        self.wrong(format!("{error}{option}"))
+        self.invalid(format!("{error}{option}"))
     }
 
-    pub(super) fn wrong(&self, what: impl ToString) -> Failure {
-        Failure::Recording(self.file.clone(), what.to_string())
+    pub(super) fn invalid(&self, why: impl ToString) -> Failure {
+        Failure::Invalid(self.file.clone(), why.to_string())
     }
 }

@@ -1,6 +1,6 @@
 //! Writes the files of a recording.
 
-use super::{arguments::Arguments, beside::Beside};
+use super::{arguments::Arguments, comparison::PlanComparison};
 use crate::{
     failure::Failure,
     output::{Out, Outputs},
@@ -30,26 +30,27 @@ pub(super) fn write(
     arguments: &Arguments,
     outputs: &mut Outputs,
     recording: &LoadedCapture,
-    beside: Option<&Beside>,
-    base: Option<&Scenario>,
+    comparison: Option<&PlanComparison>,
+    planned: Option<&Scenario>,
 ) -> Result<(), Failure> {
     if arguments.vcd.is_some() {
         arguments.vcd_timescale.of_clock(recording.clock_hz).map_err(Failure::Timescale)?;
     }
     // Validate before a file is created.
     let channels = &recording.report.channels;
-    if arguments.steps.is_some() && channels.iter().all(|found| found.channel != arguments.channel) {
-        let others: Vec<String> = channels.iter().map(|found| found.channel.to_string()).collect();
-        let others = if others.is_empty() { "none".to_owned() } else { others.join(", ") };
-        return Err(arguments.wrong(format!(
-            "--channel: channel {} has no steps; channels with steps: {others}",
-            arguments.channel
-        )));
+    if arguments.steps.is_some() && channels.iter().all(|report| report.channel != arguments.channel) {
+        let others: Vec<String> = channels.iter().map(|report| report.channel.to_string()).collect();
+        let remedy = match others.as_slice() {
+            [] => "map a channel to STEP0, such as --map STEP0=CH1".to_owned(),
+            [only] => format!("use {only}"),
+            _ => format!("use one of {}", others.join(", ")),
+        };
+        return Err(arguments.invalid(format!("--channel: {} has no steps; {remedy}", arguments.channel)));
     }
     let text = arguments
         .write_scenario
         .as_ref()
-        .map(|path| scenario(path, arguments, recording, base))
+        .map(|path| scenario(path, arguments, recording, planned))
         .transpose()?;
     let mut file = |path: &Option<PathBuf>, write: &dyn Fn(&mut Out) -> io::Result<()>| {
         let Some(path) = path else { return Ok(()) };
@@ -59,11 +60,11 @@ pub(super) fn write(
     file(&arguments.write_scenario, &|out| {
         text.as_ref().map_or(Ok(()), |text| out.write_all(text.as_bytes()))
     })?;
-    file(&arguments.late, &|out| beside.map_or(Ok(()), |beside| late(out, beside)))?;
+    file(&arguments.late, &|out| comparison.map_or(Ok(()), |comparison| late(out, comparison)))?;
     file(&arguments.steps, &|out| steps(out, &recording.steps_of(arguments.channel)))?;
     file(&arguments.bytes, &|out| bytes(out, recording))?;
     file(&arguments.packets, &|out| {
-        let addressed = base.is_some_and(|base| base.line.address.is_some());
+        let addressed = planned.is_some_and(|planned| planned.line.address.is_some());
         let packets = Packets::of(&recording.report, recording.clock_hz, recording.channels, addressed);
         let mut text = String::new();
         packets.write_csv(&mut text).map_err(io::Error::other)?;
@@ -101,33 +102,33 @@ fn scenario(
     path: &Path,
     arguments: &Arguments,
     recording: &LoadedCapture,
-    base: Option<&Scenario>,
+    planned: Option<&Scenario>,
 ) -> Result<String, Failure> {
     let scenario = recording
         .scenario(
             &arguments.name(),
             arguments.of_steps,
             arguments.error_us.map_or(0.0, Microseconds::get),
-            base,
+            planned,
         )
         .map_err(|refused| {
-            arguments.wrong(format!("cannot make a scenario from this recording: {refused}"))
+            arguments.invalid(format!("cannot make a scenario from this recording: {refused}"))
         })?;
     scenario_file::text(path, &scenario, "use --error-us with a larger error, which needs fewer segments")
 }
 
 /// A missing or additional step has a row with one empty time.
-fn late(out: &mut Out, beside: &Beside) -> io::Result<()> {
-    let one = beside.recorded.kind.singular();
+fn late(out: &mut Out, comparison: &PlanComparison) -> io::Result<()> {
+    let one = comparison.recorded.kind.singular();
     writeln!(out, "{one},recorded_{one},recorded_s,late_s,other_direction,event")?;
-    let alignment = beside.recorded.alignment(&beside.model, &beside.found);
+    let alignment = comparison.recorded.alignment(&comparison.planned, &comparison.result);
     let (mut step, mut recorded_step, mut index) = (0, 0, 0);
-    let ends = [(beside.model.len(), beside.recorded.len(), 0)];
+    let ends = [(comparison.planned.len(), comparison.recorded.len(), 0)];
     let runs = alignment.matching.runs().iter().map(|run| (run.model, run.recorded, run.count));
     for (model, recorded, count) in runs.chain(ends) {
         (step..model).try_for_each(|step| writeln!(out, "{step},,,,,missing"))?;
         for extra in recorded_step..recorded {
-            writeln!(out, ",{extra},{},,,extra", beside.recorded.at_s(extra).unwrap_or(0.0))?;
+            writeln!(out, ",{extra},{},,,extra", comparison.recorded.at_s(extra).unwrap_or(0.0))?;
         }
         for off in (index..index + count).filter_map(|index| alignment.off(index)) {
             let (step, recorded, other) = (off.step, off.recorded_step, u8::from(off.other_direction));

@@ -1,10 +1,10 @@
 //! Prints the report of `stepscope capture`.
 
-use super::{advice, beside::Beside};
+use super::{advice, comparison::PlanComparison};
 use crate::{
     json::Tables,
     terminal,
-    torque::{self, Driven},
+    torque::{self, AxisDemand},
 };
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -15,8 +15,8 @@ const MAX_SHOWN: usize = 10;
 pub(super) fn print(
     recording: &LoadedCapture,
     is_proposed: bool,
-    beside: Option<&Beside>,
-    driven: &[Driven],
+    comparison: Option<&PlanComparison>,
+    demands: &[AxisDemand],
 ) -> io::Result<()> {
     let mut out = terminal::out();
     let LoadedCapture { format, count, what, end_s, .. } = recording;
@@ -33,7 +33,7 @@ pub(super) fn print(
     }
     writeln!(out, "clock     {} Hz: {}", recording.clock_hz, recording.rounding)?;
     for channel in &recording.report.channels {
-        figures(&mut out, channel)?;
+        print_figures(&mut out, channel)?;
     }
     for line in &recording.report.lines {
         writeln!(out, "{}", advice::line(line))?;
@@ -41,14 +41,14 @@ pub(super) fn print(
     if recording.report.channels.is_empty() && recording.report.lines.is_empty() {
         writeln!(out, "no channel has steps, and no line has bytes")?;
     }
-    if !driven.is_empty() {
+    if !demands.is_empty() {
         writeln!(out, "torque")?;
-        driven.iter().try_for_each(|driven| torque::text::report(driven, &mut out))?;
+        demands.iter().try_for_each(|demand| torque::text::report(demand, &mut out))?;
     }
-    beside.map_or(Ok(()), |beside| comparison(&mut out, beside))
+    comparison.map_or(Ok(()), |comparison| print_comparison(&mut out, comparison))
 }
 
-fn figures(out: &mut impl Write, ChannelReport { channel, figures }: &ChannelReport) -> io::Result<()> {
+fn print_figures(out: &mut impl Write, ChannelReport { channel, figures }: &ChannelReport) -> io::Result<()> {
     let of = figures;
     writeln!(
         out,
@@ -84,9 +84,9 @@ const fn plural(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
-    let found = &beside.found.comparison;
-    let (what, one) = (beside.found.kind.plural(), beside.found.kind.singular());
+fn print_comparison(out: &mut impl Write, comparison: &PlanComparison) -> io::Result<()> {
+    let found = &comparison.result.comparison;
+    let (what, one) = (comparison.result.kind.plural(), comparison.result.kind.singular());
     writeln!(
         out,
         "compared with the plan: {} {what} recorded, {} planned, {} in both, {} missing, {} extra",
@@ -114,7 +114,7 @@ fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
             more => format!(" ({more} outliers excluded)"),
         }
     )?;
-    let within = us(beside.within.seconds());
+    let within = us(comparison.tolerance.seconds());
     match found.differing {
         0 => writeln!(out, "  no {one} is off by more than {within:.3} us")?,
         _ => writeln!(
@@ -123,9 +123,9 @@ fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
             found.differing, found.compared
         )?,
     }
-    let differences = &beside.found.differences;
+    let differences = &comparison.result.differences;
     for difference in differences.listed.iter().take(MAX_SHOWN) {
-        writeln!(out, "  {}", difference.to_text(beside.found.kind))?;
+        writeln!(out, "  {}", difference.to_text(comparison.result.kind))?;
     }
     match differences.count.saturating_sub(MAX_SHOWN) {
         0 => Ok(()),
@@ -133,9 +133,9 @@ fn comparison(out: &mut impl Write, beside: &Beside) -> io::Result<()> {
     }
 }
 
-pub(super) fn difference(beside: &Beside) -> String {
-    let found = &beside.found.differences;
-    let first = found.listed.first().map_or_else(String::new, |first| first.to_text(beside.found.kind));
+pub(super) fn difference(comparison: &PlanComparison) -> String {
+    let found = &comparison.result.differences;
+    let first = found.listed.first().map_or_else(String::new, |first| first.to_text(comparison.result.kind));
     let more = match found.count {
         0 | 1 => String::new(),
         count => format!("; {count} differences in all"),
@@ -147,7 +147,7 @@ pub(super) fn tables(
     tables: Tables,
     recording: &LoadedCapture,
     is_proposed: bool,
-    beside: Option<&Beside>,
+    comparison: Option<&PlanComparison>,
 ) -> Tables {
     let file = json!({
         "format": recording.format,
@@ -180,10 +180,10 @@ pub(super) fn tables(
             "hint": line.hint.as_ref().map(|text| advice::of_line(text, line)),
         })
     });
-    let comparison = beside.map(|beside| {
-        let found = &beside.found.comparison;
+    let summary = comparison.map(|comparison| {
+        let found = &comparison.result.comparison;
         json!({
-            "compares": beside.found.kind.plural(),
+            "compares": comparison.result.kind.plural(),
             "other_values": found.other_values,
             "missing": found.missing,
             "extra": found.extra,
@@ -191,7 +191,7 @@ pub(super) fn tables(
             "model": found.model,
             "compared": found.compared,
             "differing": found.differing,
-            "allowed_s": beside.within,
+            "allowed_s": comparison.tolerance,
             "offset_s": found.offset_s,
             "largest_late_s": found.largest.late_s,
             "largest_index": found.largest.step,
@@ -205,9 +205,9 @@ pub(super) fn tables(
             "first_difference_s": found.first_difference.map(|first| first.recorded_s),
         })
     });
-    let events = beside.into_iter().flat_map(|beside| {
-        let kind = beside.found.kind;
-        beside.found.differences.listed.iter().map(move |difference| {
+    let events = comparison.into_iter().flat_map(|comparison| {
+        let kind = comparison.result.kind;
+        comparison.result.differences.listed.iter().map(move |difference| {
             let mut row = serde_json::to_value(difference).unwrap_or_default();
             row["text"] = difference.to_text(kind).into();
             row
@@ -219,6 +219,6 @@ pub(super) fn tables(
         .with("notes", notes)
         .with("steps", steps)
         .with("lines", lines)
-        .with("comparison", comparison)
+        .with("comparison", summary)
         .with("events", events)
 }

@@ -50,7 +50,7 @@ pub(super) fn send(
     match lost {
         Some(why) => Err(Failure::LostPort(why)),
         None if interrupted => Err(Failure::Interrupted),
-        None => Err(Failure::NotVerified(
+        None => Err(Failure::Check(
             "raw packets were sent, not verified, because a raw controller does not reply; use the framed protocol for a verified result"
                 .to_owned(),
         )),

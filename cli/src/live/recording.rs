@@ -1,13 +1,13 @@
 //! Writes a session's recording: a scenario, and its wall-clock times (LIVE H5).
 
-use crate::{failure::Failure, output::Out, terminal};
+use crate::{failure::Failure, output::Out, terminal, verify};
 use std::{
     fs::{self, OpenOptions},
     io::{self, Write},
     path::{Path, PathBuf},
 };
 use stepscope_core::{
-    inspect::trace::{fingerprint::Fingerprinter, run_fingerprint::RunFingerprint},
+    inspect::trace::fingerprint::Fingerprinter,
     scenario::{Scenario, link},
     sim::{
         Experiment,
@@ -16,44 +16,41 @@ use stepscope_core::{
     },
 };
 
-pub(crate) type Named = (PathBuf, Out);
+/// The two files of a recording, with their paths.
+pub(crate) struct Files {
+    pub(crate) scenario: (PathBuf, Out),
+    pub(crate) times: (PathBuf, Out),
+}
 
-pub(crate) fn beside(record: &Path) -> PathBuf {
+/// The file of the wall-clock times: `NAME.session.json`.
+pub(crate) fn times_path(record: &Path) -> PathBuf {
     let mut name = record.file_stem().unwrap_or_default().to_os_string();
     name.push(".session.json");
     record.with_file_name(name)
 }
 
+/// Writes both files. The inner error is a recording that does not reproduce the session.
 pub(crate) fn write(
     session: &Session,
     (clock, times): (&SessionClock, &SessionTimes),
-    ((record, mut out), (beside, mut out_beside)): (Named, Named),
+    mut files: Files,
 ) -> Result<Result<(), NotTheSession>, Failure> {
     let recording = session.recording();
-    let whole = session.records_all();
+    let is_complete = session.records_all();
     let verified = recording.verify();
-    let mut rescue = Vec::new();
     // A session's limits ensure a readable form.
     let scenario = &recording.scenario;
     let text = scenario.to_file_json().unwrap_or_else(|| scenario.to_json());
-    let texts = [
-        (&record, &mut out, format!("{text}\n")),
-        (&beside, &mut out_beside, times.to_json(clock, &recording, whole)),
-    ];
+    let texts = [format!("{text}\n"), times.to_json(clock, &recording, is_complete)];
     let mut failed = None;
-    for (path, out, text) in texts {
+    for ((path, out), text) in [&mut files.scenario, &mut files.times].into_iter().zip(&texts) {
         let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-        if let Err(error) = &written
-            && failed.is_none()
-        {
-            failed = Some((path.clone(), error.to_string()));
-        }
-        rescue.push((path.clone(), text));
+        failed = failed.or(written.err().map(|error| (path.clone(), error.to_string())));
     }
     if let Some((path, error)) = failed {
-        return Err(rescued(&path, &error, &rescue));
+        return Err(rescue(&path, &error, [&files.scenario.0, &files.times.0].into_iter().zip(&texts)));
     }
-    if !whole {
+    if !is_complete {
         let cycles = recording.scenario.run_cycles.unwrap_or(0);
         let _ = writeln!(
             terminal::err(),
@@ -63,31 +60,33 @@ pub(crate) fn write(
     Ok(verified)
 }
 
-/// `None` if it does not fit in a link.
+/// `None` if the scenario does not fit in a link.
 pub(crate) fn link(scenario: &Scenario) -> Option<String> {
     let link = link::encode(scenario).ok()?;
     let experiment = Experiment::new(scenario).ok()?;
-    let mut seen = vec![Fingerprinter::default(); experiment.controllers()];
-    experiment.run_each(&mut seen);
-    let proof = RunFingerprint::of(seen.into_iter().map(Fingerprinter::finish).collect());
-    Some(link::with_part(link, "d", &proof.emit()))
+    let mut traces = vec![Fingerprinter::default(); experiment.controllers()];
+    experiment.run_each(&mut traces);
+    Some(verify::with_digests(link, traces.into_iter()))
 }
 
-/// Writes the recording elsewhere if its disk is full.
-fn rescued(path: &Path, error: &str, texts: &[(PathBuf, String)]) -> Failure {
-    let mut saved = Vec::new();
-    for (path, text) in texts {
-        if let Some(elsewhere) = rescue_in(&std::env::temp_dir(), path, text) {
-            saved.push(elsewhere.display().to_string());
-        }
-    }
-    let also = if saved.is_empty() { "nothing could be written elsewhere" } else { "saved instead as" };
-    Failure::Port(path.display().to_string(), format!("{error}; {also} {}", saved.join(" ")))
+/// Writes the recording to the temporary folder, because its disk is full.
+fn rescue<'a>(path: &Path, error: &str, texts: impl Iterator<Item = (&'a PathBuf, &'a String)>) -> Failure {
+    let folder = std::env::temp_dir();
+    let saved: Vec<String> = texts
+        .filter_map(|(path, text)| rescue_in(&folder, path, text))
+        .map(|path| path.display().to_string())
+        .collect();
+    let result = if saved.is_empty() {
+        "it could not be saved elsewhere; free some space".to_owned()
+    } else {
+        format!("saved instead as {}", saved.join(" "))
+    };
+    Failure::Port(path.display().to_string(), format!("{error}; {result}"))
 }
 
 const MAX_NAMES: u32 = 100;
 
-/// Never opens an existing name, not even a dangling symbolic link: other users may write to this folder.
+/// Never opens an existing file, not even through a dangling symbolic link: other users may write to this folder.
 fn rescue_in(folder: &Path, path: &Path, text: &str) -> Option<PathBuf> {
     let name = path.file_name()?.to_string_lossy().into_owned();
     for number in 0..MAX_NAMES {
@@ -115,7 +114,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn a_rescued_file_is_a_new_one_and_no_link_is_followed() {
+    fn rescues_to_new_files_without_following_links() {
         let folder = std::env::temp_dir().join(format!("stepscope-rescue-{}", std::process::id()));
         fs::create_dir_all(&folder).expect("a folder");
         let (elsewhere, record) = (folder.join("elsewhere"), Path::new("/full/disk/session.json"));

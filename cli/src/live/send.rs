@@ -134,7 +134,7 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     }
     match report.doubt() {
         None => Ok(()),
-        Some(why) => Err(Failure::NotVerified(why)),
+        Some(why) => Err(Failure::Check(why)),
     }
 }
 

@@ -4,7 +4,7 @@
 use super::{
     keyboard::Keyboard,
     port::{Listener, Port, Rs485, Serial},
-    recording::{self, beside},
+    recording::{self, Files, times_path},
     server::{Pacing, Server, Settings},
 };
 use crate::{
@@ -80,20 +80,20 @@ fn pace(text: &str) -> Result<Pacing, String> {
 
 pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
-    let beside = arguments.record.as_deref().map(beside);
-    let files = || arguments.record.iter().chain(&beside).map(PathBuf::as_path);
-    if let Some(path) = files().find(|path| !output::can_be_file(path)) {
+    let times = arguments.record.as_deref().map(times_path);
+    let paths = || arguments.record.iter().chain(&times).map(PathBuf::as_path);
+    if let Some(path) = paths().find(|path| !output::can_be_file(path)) {
         let detail =
             "not a file; a recording has two, NAME.json and NAME.session.json; use --record NAME.json";
         return Err(Failure::Output(path.to_owned(), detail));
     }
     let link = arguments.pty.iter().flatten().map(PathBuf::as_path);
-    let mut outputs = Outputs::check(Some(path), files().chain(link))?;
+    let mut outputs = Outputs::check(Some(path), paths().chain(link))?;
     let scenario = scenarios::read(path)?;
     let session = Session::new(&scenario).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     let mut create = |path: &Path| outputs.create(path).map(|out| (path.to_owned(), out));
-    let files = match (&arguments.record, &beside) {
-        (Some(record), Some(beside)) => Some((create(record)?, create(beside)?)),
+    let files = match (&arguments.record, &times) {
+        (Some(record), Some(times)) => Some(Files { scenario: create(record)?, times: create(times)? }),
         _ => None,
     };
     // Until here a signal ends the command at once, even while it waits for a pipe.
@@ -106,7 +106,7 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     // A closed standard output must not lose the recording.
     let printed = server.print_end().map_err(Failure::output);
     if let Some(files) = files {
-        let record = files.0.0.clone();
+        let record = files.scenario.0.clone();
         let verified = recording::write(&server.session, (&server.clock, &server.times), files)?;
         outputs.commit()?;
         verified.map_err(|why| Failure::NotRecorded(record, why.to_string()))?;
@@ -119,37 +119,37 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     }
     printed?;
     ended?;
-    let stretches = server.clock.setbacks();
-    if stretches.count > 0 {
-        let ms = server.clock.nanos(stretches.cycles) as f64 / 1e6;
-        return Err(Failure::NotRealTime(stretches.count, ms));
+    let setbacks = server.clock.setbacks();
+    if setbacks.count > 0 {
+        let ms = server.clock.nanos(setbacks.cycles) as f64 / 1e6;
+        return Err(Failure::NotRealTime(setbacks.count, ms));
     }
     Ok(())
 }
 
 fn open(arguments: &Arguments, session: &Session) -> Result<Box<dyn Port>, Failure> {
     if session.run().stand_alone().is_some() {
-        return buttons(arguments);
+        return open_keyboard(arguments);
     }
     let baud = session.experiment().baud();
-    let tell = |text: String| {
+    let print = |text: String| {
         let mut out = terminal::out();
         writeln!(out, "{text}").and_then(|()| out.flush()).map_err(Failure::output)
     };
     if let Some(address) = arguments.tcp {
         let (listener, address) = Listener::open(address, arguments.allow_remote)?;
-        tell(format!("tcp:{address}"))?;
+        print(format!("tcp:{address}"))?;
         return Ok(Box::new(listener));
     }
     if let Some(device) = &arguments.port {
         let port = Serial::open(device, baud, Rs485::Auto)?;
-        tell(device.display().to_string())?;
+        print(device.display().to_string())?;
         return Ok(Box::new(port));
     }
     #[cfg(unix)]
     if let Some(link) = &arguments.pty {
         let pty = super::port::Pty::open(link.as_deref(), baud)?;
-        tell(format!("pty:{}", pty.path.display()))?;
+        print(format!("pty:{}", pty.path.display()))?;
         return Ok(Box::new(pty));
     }
     Err(Failure::Option(match arguments.pty {
@@ -158,7 +158,7 @@ fn open(arguments: &Arguments, session: &Session) -> Result<Box<dyn Port>, Failu
     }))
 }
 
-fn buttons(arguments: &Arguments) -> Result<Box<dyn Port>, Failure> {
+fn open_keyboard(arguments: &Arguments) -> Result<Box<dyn Port>, Failure> {
     if arguments.pty.is_some() || arguments.tcp.is_some() || arguments.port.is_some() {
         let why = "a stand-alone controller has no line; omit --pty, --tcp and --port, and write lines such as `press start 100ms` to standard input";
         return Err(Failure::Option(format!("{}: {why}", arguments.scenario.display())));

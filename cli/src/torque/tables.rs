@@ -1,12 +1,12 @@
 //! The results of `stepscope torque` as tables.
 
-use super::driven::{Driven, MotionSource};
+use super::axis_demand::{AxisDemand, MotionSource};
 use crate::json::Tables;
 use serde_json::{Value, json};
 use stepscope_core::inspect::motion::torque::{Moment, Ramps};
 
-pub(crate) fn axes(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
-    driven.iter().map(|Driven { axis, machine, source, demand, agreement }| {
+pub(crate) fn axes(demands: &[AxisDemand]) -> impl Iterator<Item = Value> + '_ {
+    demands.iter().map(|AxisDemand { axis, machine, source, demand, agreement }| {
         let least = demand.least.as_ref();
         json!({
             "axis": axis,
@@ -29,11 +29,11 @@ pub(crate) fn axes(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
     })
 }
 
-pub(crate) fn shortages(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
-    driven.iter().flat_map(|driven| {
-        driven.demand.shortages.iter().map(|found| {
+pub(crate) fn shortages(demands: &[AxisDemand]) -> impl Iterator<Item = Value> + '_ {
+    demands.iter().flat_map(|axis| {
+        axis.demand.shortages.iter().map(|found| {
             json!({
-                "axis": driven.axis,
+                "axis": axis.axis,
                 "from_s": found.from_s,
                 "to_s": found.to_s,
                 "times": found.times,
@@ -47,8 +47,8 @@ pub(crate) fn shortages(driven: &[Driven]) -> impl Iterator<Item = Value> + '_ {
     })
 }
 
-pub(super) fn tables(driven: &[Driven]) -> Tables {
-    let ramps = driven.iter().flat_map(|Driven { axis, machine, source, .. }| {
+pub(super) fn tables(demands: &[AxisDemand]) -> Tables {
+    let ramps = demands.iter().flat_map(|AxisDemand { axis, machine, source, .. }| {
         let moves = match source {
             MotionSource::Plan(plan) => plan.moves(),
             MotionSource::Steps => &[],
@@ -69,6 +69,6 @@ pub(super) fn tables(driven: &[Driven]) -> Tables {
             }))
         })
     });
-    let all = Tables::of("torque").with("axes", axes(driven)).with("shortages", shortages(driven));
+    let all = Tables::of("torque").with("axes", axes(demands)).with("shortages", shortages(demands));
     all.with("ramps", ramps)
 }

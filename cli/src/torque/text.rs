@@ -1,6 +1,6 @@
 //! The results of `stepscope torque` as text.
 
-use super::driven::{Driven, MotionSource};
+use super::axis_demand::{AxisDemand, MotionSource};
 use std::io::{self, Write};
 use stepscope_core::{
     inspect::{
@@ -14,8 +14,8 @@ const MAX_SHOWN: usize = 20;
 /// Maximum time of a move, in s (docs/scenario.md).
 const MAX_DURATION_S: f64 = 86_400.0;
 
-pub(crate) fn report(driven: &Driven, out: &mut impl Write) -> io::Result<()> {
-    let Driven { axis, machine, source, demand, agreement } = driven;
+pub(crate) fn report(axis_demand: &AxisDemand, out: &mut impl Write) -> io::Result<()> {
+    let AxisDemand { axis, machine, source, demand, agreement } = axis_demand;
     match source {
         MotionSource::Plan(_) => writeln!(out, "axis {axis}")?,
         MotionSource::Steps => {

@@ -1,6 +1,6 @@
 //! Torque of steps without a plan: of packets, line scripts, segment lists.
 
-use super::{arguments::Arguments, driven::Driven};
+use super::{arguments::Arguments, axis_demand::AxisDemand};
 use crate::{
     failure::{Failure, Numbered},
     run_recording,
@@ -13,7 +13,7 @@ use stepscope_core::{
 };
 
 /// The selected channels with steps, with the plant's motors or the named one: at least one.
-pub(super) fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<Driven>, Failure> {
+pub(super) fn demands(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<AxisDemand>, Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
     let refused = |field, detail| wrong(vec![Problem::new(field, ValueError::Conflict { detail })]);
@@ -32,11 +32,11 @@ pub(super) fn driven(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<D
     let clock_hz = experiment.config().clock_hz();
     let selected =
         (0..channels).filter(|channel| arguments.axis.is_none_or(|only| only == usize::from(*channel)));
-    let found: Vec<Driven> = selected
+    let found: Vec<AxisDemand> = selected
         .filter_map(|channel| {
             let steps = Some(steps(&recording.trace, channel)).filter(|steps| !steps.is_empty())?;
             let machine = Machine::of_channel(&named, 0, channel.into())?;
-            Some(Driven::of_steps(channel, machine, &steps, clock_hz))
+            Some(AxisDemand::of_steps(channel, machine, &steps, clock_hz))
         })
         .collect();
     if found.is_empty() {

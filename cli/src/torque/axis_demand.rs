@@ -10,7 +10,7 @@ use stepscope_core::{
 };
 
 /// An axis, or a channel without a plan, with its motor.
-pub(crate) struct Driven {
+pub(crate) struct AxisDemand {
     pub(crate) axis: usize,
     pub(crate) machine: Machine,
     pub(crate) source: MotionSource,
@@ -24,7 +24,7 @@ pub(crate) enum MotionSource {
     Steps,
 }
 
-impl Driven {
+impl AxisDemand {
     pub(crate) fn of_steps(channel: u8, machine: Machine, steps: &[Step], clock_hz: u32) -> Self {
         let demand = Demand::of_steps(&machine, steps, clock_hz);
         Self { axis: channel.into(), machine, source: MotionSource::Steps, demand, agreement: None }
