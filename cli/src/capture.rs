@@ -92,7 +92,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(comparison) = comparison.filter(|comparison| !comparison.result.is_same()) {
         return Err(Failure::Check(text::difference(&comparison)));
     }
-    arguments.timing.needs_steps(recording.report.channels.is_empty())?;
+    arguments.timing.needs_steps(!recording.report.channels.is_empty())?;
     timing.map_or(Ok(()), |(check, _)| arguments.timing.result(&check))
 }
 
@@ -180,7 +180,11 @@ fn read(arguments: &Arguments, progress: &mut Progress) -> Result<Reading, Failu
         Err(error) => {
             let sample = path.to_str().and_then(sample).ok_or_else(|| {
                 let hint = suggest::hint(&path.to_string_lossy(), SAMPLES.iter().map(|sample| sample.id));
-                if hint.is_empty() { failed(error) } else { Failure::NoRecording(path.clone(), hint) }
+                if hint.is_empty() {
+                    return failed(error);
+                }
+                let why = format!("no file or recording of this name{hint}");
+                Failure::Unusable(path.display().to_string(), why)
             })?;
             return Ok(read::read(Cursor::new(sample.bytes), &limits, &mut |_| true));
         }

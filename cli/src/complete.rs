@@ -15,12 +15,12 @@ use stepscope_core::{capture::samples::SAMPLES, inspect::trace::drivers::DRIVERS
 /// Set by the shell's script.
 const VARIABLE: &str = "STEPSCOPE_COMPLETE";
 
-/// Prints candidates and ends the program, if a shell requests them.
-pub(crate) fn answer(command: fn() -> Command) {
+/// If a shell requests candidates, prints them and ends the program.
+pub(crate) fn print_candidates(command: fn() -> Command) {
     CompleteEnv::with_factory(command).var(VARIABLE).complete();
 }
 
-pub(crate) fn script(shell: Shell, out: &Path) -> Result<(), Failure> {
+pub(crate) fn write_script(shell: Shell, out: &Path) -> Result<(), Failure> {
     let mut text = Vec::new();
     let shells = Shells::builtins();
     let writer = shells.completer(&shell.to_string()).ok_or_else(|| {
@@ -34,7 +34,7 @@ pub(crate) fn script(shell: Shell, out: &Path) -> Result<(), Failure> {
 }
 
 /// How a shell completes the value of this argument, if not as a path or one of its possible values.
-pub(crate) fn of(command: &str, id: &str) -> Option<ArgValueCompleter> {
+pub(crate) fn completer(command: &str, id: &str) -> Option<ArgValueCompleter> {
     let is_read = paths::of(command).is_some_and(|paths| paths.read.contains(&id));
     match (command, id) {
         ("presets", "id") => Some(ArgValueCompleter::new(presets)),
@@ -54,8 +54,8 @@ fn files_and(given: &OsStr, mut names: Vec<CompletionCandidate>) -> Vec<Completi
 
 fn candidates<'a>(given: &OsStr, names: impl Iterator<Item = (&'a str, String)>) -> Vec<CompletionCandidate> {
     let given = given.to_string_lossy();
-    let fitting = names.filter(|(name, _)| name.starts_with(&*given));
-    fitting.map(|(name, help)| CompletionCandidate::new(name).help(Some(help.into()))).collect()
+    let matching = names.filter(|(name, _)| name.starts_with(&*given));
+    matching.map(|(name, help)| CompletionCandidate::new(name).help(Some(help.into()))).collect()
 }
 
 fn presets(given: &OsStr) -> Vec<CompletionCandidate> {

@@ -1,7 +1,7 @@
 //! `stepscope faults`: runs a scenario with random line faults, one run per seed.
 
 use crate::{
-    failure::Failure,
+    failure::{Failure, plural},
     json::Tables,
     options::{Json, Work},
     output::STANDARD,
@@ -152,7 +152,13 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     }
     // On a raw line wrong steps are expected.
     match reports.iter().find(|(name, report)| *name == FRAMED && report.tally.is_wrong()) {
-        Some((_, report)) => Err(Failure::WrongSteps(report.tally.wrong_seeds)),
+        Some((_, report)) => {
+            let count = report.tally.wrong_seeds;
+            let s = plural(count);
+            Err(Failure::Check(format!(
+                "framed line: wrong, duplicated or missing ticks with {count} seed{s}; run one with --seed"
+            )))
+        }
         None => Ok(()),
     }
 }

@@ -1,4 +1,4 @@
-//! What the help of a command shows besides its description: groups of options, exit codes, examples.
+//! Details of the help pages: groups of options, exit codes, examples.
 
 use crate::{complete, paths};
 use clap::{Arg, Command};
@@ -6,6 +6,7 @@ use clap::{Arg, Command};
 /// The exit codes and examples of one command.
 pub(crate) struct Page {
     pub(crate) command: &'static str,
+    /// When the command ends with exit codes 1 to 4; empty if it never does.
     one: &'static str,
     two: &'static str,
     three: &'static str,
@@ -261,8 +262,8 @@ impl Page {
     }
 }
 
-/// Completes a command and its subcommands.
-pub(crate) fn complete(command: Command) -> Command {
+/// Adds groups, exit codes and examples to a command and its subcommands.
+pub(crate) fn add_details(command: Command) -> Command {
     with_page("", command)
 }
 
@@ -280,7 +281,7 @@ fn with_page(name: &str, command: Command) -> Command {
 
 fn with_group(command: &str, argument: Arg) -> Arg {
     let id = argument.get_id().to_string();
-    let mut argument = match complete::of(command, &id) {
+    let mut argument = match complete::completer(command, &id) {
         Some(completer) => argument.add(completer),
         None => argument,
     };
@@ -294,7 +295,7 @@ fn with_group(command: &str, argument: Arg) -> Arg {
     argument.help_heading(group(command, &id))
 }
 
-/// The heading of an option.
+/// The heading of an option in the help.
 fn group(command: &str, id: &str) -> &'static str {
     match (command, id) {
         (_, "motor" | "microsteps" | "motor_driver" | "motors") => "Motor options",

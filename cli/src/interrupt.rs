@@ -12,7 +12,8 @@ use std::{
     sync::atomic::{AtomicBool, AtomicUsize, Ordering},
 };
 
-const AT_ONCE: usize = 3;
+/// This many signals end even a live session at once.
+const FORCED: usize = 3;
 
 static WATCHED: AtomicBool = AtomicBool::new(false);
 static COUNT: AtomicUsize = AtomicUsize::new(0);
@@ -23,25 +24,25 @@ pub(crate) fn install() {
     let _ = system::install();
 }
 
-/// Counts signals from now on, ignored ones included: a session in the background must be stoppable.
+/// Counts signals from now on. Includes ignored ones, because a session in the background must be stoppable.
 pub(crate) fn watch() -> Result<(), Failure> {
     WATCHED.store(true, Ordering::SeqCst);
-    system::listen_to_all().map_err(|error| Failure::Port("Ctrl-C".to_owned(), error.to_string()))
+    system::listen_to_all().map_err(|error| Failure::Unusable("Ctrl-C".to_owned(), error.to_string()))
 }
 
 pub(crate) fn count() -> usize {
     COUNT.load(Ordering::SeqCst)
 }
 
-fn came() {
-    let at_once = COUNT.fetch_add(1, Ordering::SeqCst) + 1 >= AT_ONCE;
-    if WATCHED.load(Ordering::SeqCst) && !at_once {
+fn handle_signal() {
+    let is_forced = COUNT.fetch_add(1, Ordering::SeqCst) + 1 >= FORCED;
+    if WATCHED.load(Ordering::SeqCst) && !is_forced {
         return;
     }
-    // Held until the process ends, so that no file is renamed meanwhile. If all files have their names, the command
-    // ends by itself.
+    // Locked until the process ends, so that no file is renamed meanwhile. Once the files are renamed, the command ends
+    // by itself.
     let committed = output::committed();
-    if *committed && !at_once {
+    if *committed && !is_forced {
         return;
     }
     output::remove_temporary();
@@ -50,7 +51,7 @@ fn came() {
 
 #[cfg(unix)]
 mod system {
-    use super::{came, io};
+    use super::{handle_signal, io};
     use signal_hook::{
         consts::{SIGHUP, SIGINT, SIGTERM},
         iterator::{Handle, Signals},
@@ -65,7 +66,7 @@ mod system {
         let mut signals = Signals::new(ALL.into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0))?;
         let _ = HANDLE.set(signals.handle());
         thread::Builder::new().name("signals".to_owned()).spawn(move || {
-            signals.forever().for_each(|_| came());
+            signals.forever().for_each(|_| handle_signal());
         })?;
         Ok(())
     }
@@ -75,7 +76,7 @@ mod system {
         ALL.into_iter().try_for_each(|signal| handle.add_signal(signal))
     }
 
-    /// A bit per ignored signal; 0 if the system does not tell.
+    /// A bit per ignored signal; 0 if the system does not report them.
     fn ignored() -> u64 {
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -85,10 +86,10 @@ mod system {
 
 #[cfg(not(unix))]
 mod system {
-    use super::{came, io};
+    use super::{handle_signal, io};
 
     pub(super) fn install() -> io::Result<()> {
-        ctrlc::set_handler(came).map_err(io::Error::other)
+        ctrlc::set_handler(handle_signal).map_err(io::Error::other)
     }
 
     pub(super) fn listen_to_all() -> io::Result<()> {

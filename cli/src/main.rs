@@ -136,11 +136,11 @@ enum Command {
 }
 
 fn command_line() -> clap::Command {
-    help::complete(Arguments::command())
+    help::add_details(Arguments::command())
 }
 
 fn main() -> ExitCode {
-    complete::answer(command_line);
+    complete::print_candidates(command_line);
     interrupt::install();
     let arguments = command_line().try_get_matches().and_then(|matches| {
         let arguments = Arguments::from_arg_matches(&matches)?;
@@ -148,7 +148,7 @@ fn main() -> ExitCode {
     });
     let result = match arguments {
         Ok((matches, arguments)) => paths::check(&matches).and_then(|()| run(arguments.command)),
-        Err(error) => match usage(&error) {
+        Err(error) => match print_usage(&error) {
             Ok(code) => return code,
             Err(error) => Err(Failure::output(error)),
         },
@@ -186,13 +186,14 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Open(arguments) => scenarios::open(&arguments),
         Command::Presets(arguments) => scenarios::presets(&arguments),
         Command::Drivers(arguments) => timing::drivers(arguments.json),
-        Command::Completions { shell, out } => complete::script(shell, &out.out),
-        Command::Man { dir } => manual::pages(dir.as_deref(), command_line()),
+        Command::Completions { shell, out } => complete::write_script(shell, &out.out),
+        Command::Man { dir } => manual::write_pages(dir.as_deref(), command_line()),
     }
 }
 
-fn usage(error: &clap::Error) -> io::Result<ExitCode> {
-    // The message repeats the user's text.
+/// Prints help, or a usage error; returns the exit code.
+fn print_usage(error: &clap::Error) -> io::Result<ExitCode> {
+    // A usage error repeats the user's text, which must not control the terminal.
     let is_unsafe = |c| is_unsafe(c) && c != '\n' && c != '\t';
     if !error.use_stderr() {
         error.print()?;

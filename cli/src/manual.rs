@@ -1,11 +1,11 @@
-//! `stepscope man`, generated from the help.
+//! `stepscope man`: manual pages, generated from the help.
 
 use crate::failure::Failure;
 use clap::Command;
 use clap_mangen::Man;
 use std::{fs, io, path::Path};
 
-pub(crate) fn pages(folder: Option<&Path>, command: Command) -> Result<(), Failure> {
+pub(crate) fn write_pages(folder: Option<&Path>, command: Command) -> Result<(), Failure> {
     match folder {
         None => Man::new(command).render(&mut io::stdout().lock()).map_err(Failure::output),
         Some(folder) => fs::create_dir_all(folder)

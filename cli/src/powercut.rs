@@ -1,7 +1,7 @@
 //! `stepscope powercut`: cuts a stand-alone controller's power and checks the restored position.
 
 use crate::{
-    failure::Failure,
+    failure::{Failure, plural},
     json::Tables,
     options::{Json, Work},
     parallel,
@@ -71,14 +71,19 @@ struct WearRow {
 }
 
 pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
-    let missing = || Failure::NoStandAlone(arguments.scenario.clone());
-    let (_, experiment) = scenarios::validated_after(&arguments.scenario, |scenario| {
+    let path = &arguments.scenario;
+    let missing = || {
+        let why = "the scenario has no stand-alone controller; use one with source.standalone, or a preset such as zhang-2012-controller";
+        Failure::invalid(path, why)
+    };
+    let (_, experiment) = scenarios::validated_after(path, |scenario| {
         if matches!(scenario.source, Source::Standalone(_)) { Ok(()) } else { Err(missing()) }
     })?;
     let setup = experiment.stand_alone().ok_or_else(missing)?;
     let cost = experiment.cost();
     if cost.is_over_budget() {
-        return Err(Failure::LongRun(arguments.scenario.clone()));
+        let why = "the run has more than 4000000 edges, or no end; set run_cycles, or use a shorter program";
+        return Err(Failure::invalid(path, why));
     }
     let end = Instant(cost.end_cycle);
     let memories = memories(setup);
@@ -102,7 +107,10 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
     }
     match rows.iter().map(|row| row.tally.wrong).sum() {
         0 => Ok(()),
-        wrong => Err(Failure::SilentlyWrong(wrong)),
+        wrong => Err(Failure::Check(format!(
+            "a wrong position is trusted after {wrong} power cut{}; use --json for the first cycle",
+            plural(wrong)
+        ))),
     }
 }
 

@@ -2,15 +2,17 @@
 
 use crate::failure::Failure;
 use std::path::Path;
-use stepscope_core::inspect::trace::stored_run::Recording;
-use stepscope_core::{inspect::trace::stored_run::record_run, sim::Experiment};
+use stepscope_core::{
+    inspect::trace::stored_run::{Recording, record_run},
+    sim::Experiment,
+};
 
 /// The recording of the scenario's first controller.
 ///
 /// # Errors
-/// [`Failure::LongAnalysis`].
+/// [`Failure::Invalid`] if the run is too long to be stored.
 pub(crate) fn of(path: &Path, experiment: &Experiment) -> Result<Recording, Failure> {
     let (_, recordings) =
-        record_run(experiment, 1).map_err(|why| Failure::LongAnalysis(path.to_owned(), why))?;
+        record_run(experiment, 1).map_err(|error| Failure::invalid(path, error.to_string()))?;
     Ok(recordings.into_iter().next().unwrap_or_default())
 }

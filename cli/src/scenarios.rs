@@ -10,7 +10,7 @@ use clap::Args;
 use serde_json::json;
 use std::{
     io::{self, Read, Write},
-    path::Path,
+    path::{Path, PathBuf},
     rc::Rc,
 };
 use stepscope_core::{
@@ -65,7 +65,9 @@ fn scenario_text(path: &Path) -> Result<String, Failure> {
                 let samples = SAMPLES.iter().map(|sample| sample.id);
                 let names = all_presets().map(|preset| preset.id).chain(samples);
                 let hint = suggest::hint(&path.to_string_lossy(), names);
-                Failure::NoScenario(path, hint)
+                let why =
+                    format!("no file or preset of this name; `stepscope presets` lists the presets{hint}");
+                Failure::Unusable(path.display().to_string(), why)
             })
         }
         read => read,
@@ -85,7 +87,7 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
     if bytes.len() > MAX_TEXT_BYTES {
         return Err(Failure::TooLong(path.to_owned(), MAX_TEXT_BYTES as u64));
     }
-    String::from_utf8(bytes).map_err(|_| Failure::NotText(path.to_owned()))
+    String::from_utf8(bytes).map_err(|_| Failure::invalid(path, "not UTF-8 text; save it as UTF-8"))
 }
 
 pub(crate) fn all_presets() -> impl Iterator<Item = &'static Preset> {
@@ -134,8 +136,11 @@ pub(crate) struct PresetsArguments {
 pub(crate) fn presets(arguments: &PresetsArguments) -> Result<(), Failure> {
     let text = match &arguments.id {
         Some(id) => {
-            let known = || suggest::hint(id, all_presets().map(|preset| preset.id));
-            let preset = preset(id).ok_or_else(|| Failure::Preset(id.clone(), known()))?;
+            let preset = preset(id).ok_or_else(|| {
+                let hint = suggest::hint(id, all_presets().map(|preset| preset.id));
+                let why = format!("no preset of this name; `stepscope presets` lists the presets{hint}");
+                Failure::Invalid(PathBuf::from(id), why)
+            })?;
             terminal::json(preset.json.trim_end()) + "\n"
         }
         None => {

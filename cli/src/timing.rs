@@ -1,7 +1,7 @@
 //! The timing check of `stepscope run --timing`, and `stepscope drivers`.
 
 use crate::{
-    failure::{Failure, with_hint},
+    failure::{Failure, plural, with_hint},
     json::Tables,
     output::Out,
     scenarios, suggest, terminal,
@@ -120,7 +120,10 @@ impl Options {
         let wrong = |given: &Path, why| Failure::Option(format!("--driver: {}: {why}", given.display()));
         let named = self.driver.as_deref().map(|given| driver(given).map_err(|why| wrong(given, why)));
         let rules = named.transpose()?.or_else(own);
-        rules.map(Some).ok_or_else(|| Failure::NoDriver(path.to_owned()))
+        rules.map(Some).ok_or_else(|| {
+            let why = "the scenario has no driver; use --driver (`stepscope drivers` lists the drivers)";
+            Failure::invalid(path, why)
+        })
     }
 
     pub(crate) const fn max_violations(&self) -> usize {
@@ -140,12 +143,22 @@ impl Options {
         Ok(())
     }
 
-    pub(crate) const fn needs_steps(&self, is_empty: bool) -> Result<(), Failure> {
-        if self.strict && is_empty { Err(Failure::NoSteps) } else { Ok(()) }
+    pub(crate) fn needs_steps(&self, has_steps: bool) -> Result<(), Failure> {
+        if has_steps || !self.strict {
+            return Ok(());
+        }
+        let why =
+            "--strict: the recording has no steps to check; map a channel to STEP0, such as --map STEP0=CH1";
+        Err(Failure::Check(why.to_owned()))
     }
 
     pub(crate) fn result(&self, check: &TimingCheck) -> Result<(), Failure> {
-        if self.strict && check.total() > 0 { Err(Failure::Violations(check.total())) } else { Ok(()) }
+        let count = check.total();
+        if count == 0 || !self.strict {
+            return Ok(());
+        }
+        let s = plural(count);
+        Err(Failure::Check(format!("--strict: {count} violation{s} of the driver's timing")))
     }
 }
 

@@ -22,8 +22,11 @@ pub(crate) fn with_digests(link: String, traces: impl Iterator<Item = Fingerprin
 }
 
 pub(crate) fn verify(scenario: &Scenario, part: Option<&str>) -> Result<(), Failure> {
-    let sent = part.ok_or(Failure::NoDigests)?;
-    let sent = RunFingerprint::parse(sent).map_err(Failure::RunFingerprint)?;
+    let sent = part.ok_or_else(|| Failure::Option(
+        "--verify: the link has no digests of its sender (no d= part); create it with Share in the page, or with `stepscope run --link`"
+            .to_owned(),
+    ))?;
+    let sent = RunFingerprint::parse(sent).map_err(|error| Failure::Option(error.to_string()))?;
     let experiment = Experiment::new(scenario)
         .map_err(|problems| Failure::Scenario(PathBuf::from("the link"), problems))?;
     let controllers = experiment.controllers();

@@ -2,6 +2,7 @@
 
 use super::{advice, comparison::PlanComparison};
 use crate::{
+    failure::plural,
     json::Tables,
     terminal,
     torque::{self, AxisDemand},
@@ -78,10 +79,6 @@ fn print_figures(out: &mut impl Write, ChannelReport { channel, figures }: &Chan
         writeln!(out, "  maximum acceleration {acceleration:.0} steps/s^2, over 8 steps")?;
     }
     Ok(())
-}
-
-const fn plural(count: u64) -> &'static str {
-    if count == 1 { "" } else { "s" }
 }
 
 fn print_comparison(out: &mut impl Write, comparison: &PlanComparison) -> io::Result<()> {

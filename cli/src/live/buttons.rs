@@ -25,7 +25,7 @@ const MAX_SECONDS: f64 = 2_678_400.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Line {
-    Nothing,
+    Empty,
     Help,
     Wait(Span),
     /// Controller, change, and duration if it is not permanent.
@@ -44,10 +44,10 @@ impl Span {
 }
 
 impl FromStr for Span {
-    type Err = NoLine;
+    type Err = LineError;
 
-    fn from_str(text: &str) -> Result<Self, NoLine> {
-        let wrong = || NoLine::Time(text.to_owned());
+    fn from_str(text: &str) -> Result<Self, LineError> {
+        let wrong = || LineError::Time(text.to_owned());
         let digits = text.trim_end_matches(char::is_alphabetic);
         let unit = match text.get(digits.len()..) {
             Some("us") => 1e-6,
@@ -62,7 +62,7 @@ impl FromStr for Span {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum NoLine {
+pub(crate) enum LineError {
     Word(String),
     Input(String),
     Level(String),
@@ -72,7 +72,7 @@ pub(crate) enum NoLine {
     Count(String, &'static str),
 }
 
-impl fmt::Display for NoLine {
+impl fmt::Display for LineError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Word(word) => write!(f, "{word}: unknown word or input; `help` lists them"),
@@ -85,39 +85,39 @@ impl fmt::Display for NoLine {
     }
 }
 
-fn signal(name: &str) -> Result<Signal, NoLine> {
-    Signal::by_name(name).ok_or_else(|| NoLine::Input(name.to_owned()))
+fn signal(name: &str) -> Result<Signal, LineError> {
+    Signal::by_name(name).ok_or_else(|| LineError::Input(name.to_owned()))
 }
 
-fn level(text: &str) -> Result<bool, NoLine> {
+fn level(text: &str) -> Result<bool, LineError> {
     match text {
         "0" => Ok(false),
         "1" => Ok(true),
-        _ => Err(NoLine::Level(text.to_owned())),
+        _ => Err(LineError::Level(text.to_owned())),
     }
 }
 
-fn span(text: Option<&&str>) -> Result<Option<Span>, NoLine> {
+fn span(text: Option<&&str>) -> Result<Option<Span>, LineError> {
     text.map(|text| text.parse()).transpose()
 }
 
 impl FromStr for Line {
-    type Err = NoLine;
+    type Err = LineError;
 
-    fn from_str(text: &str) -> Result<Self, NoLine> {
+    fn from_str(text: &str) -> Result<Self, LineError> {
         let text = text.split('#').next().unwrap_or_default().trim();
         let (controller, text) = match text.split_once(':') {
             Some((index, rest)) => match index.trim().parse() {
                 Ok(index) => (index, rest),
-                Err(_) => return Err(NoLine::Word(format!("{}:", index.trim()))),
+                Err(_) => return Err(LineError::Word(format!("{}:", index.trim()))),
             },
             None => (0, text),
         };
         let words: Vec<&str> = text.split_whitespace().collect();
         let change = |signal, level, held| Self::Change(controller, Change::Level(signal, level), held);
-        let count = |word: &str, usage| NoLine::Count(word.to_owned(), usage);
+        let count = |word: &str, usage| LineError::Count(word.to_owned(), usage);
         match words.as_slice() {
-            [] => Ok(Self::Nothing),
+            [] => Ok(Self::Empty),
             ["help" | "?"] => Ok(Self::Help),
             ["wait", time] => Ok(Self::Wait(time.parse()?)),
             ["wait", ..] => Err(count("wait", "wait 2s")),
@@ -128,12 +128,12 @@ impl FromStr for Line {
             ["release", name] => Ok(change(signal(name)?, false, None)),
             ["release", ..] => Err(count("release", "release start")),
             ["push", steps] => {
-                let steps = steps.parse().map_err(|_| NoLine::Steps((*steps).to_owned()))?;
+                let steps = steps.parse().map_err(|_| LineError::Steps((*steps).to_owned()))?;
                 Ok(Self::Change(controller, Change::Push(steps), None))
             }
             ["push", ..] => Err(count("push", "push -20")),
             [word, rest @ ..] => {
-                let signal = Signal::by_name(word).ok_or_else(|| NoLine::Word((*word).to_owned()))?;
+                let signal = Signal::by_name(word).ok_or_else(|| LineError::Word((*word).to_owned()))?;
                 match rest {
                     [to] => Ok(change(signal, level(to)?, None)),
                     [to, time] => Ok(change(signal, level(to)?, Some(time.parse()?))),
@@ -164,8 +164,8 @@ mod tests {
             ("1:push -20", Line::Change(1, Change::Push(-20), None)),
             ("wait 250us", Line::Wait(Span { seconds: 250.0 * 1e-6 })),
             ("?", Line::Help),
-            ("# nothing", Line::Nothing),
-            ("", Line::Nothing),
+            ("# a comment", Line::Empty),
+            ("", Line::Empty),
         ];
         for (text, line) in rows {
             assert_eq!(text.parse(), Ok(line), "{text}");

@@ -15,7 +15,7 @@ const CHUNK: usize = 1024;
 /// A thread reads standard input, since not every system can wait for it with a time-out.
 pub(crate) struct Keyboard {
     chunks: Receiver<Vec<u8>>,
-    rest: Vec<u8>,
+    pending: Vec<u8>,
     ended: bool,
 }
 
@@ -33,7 +33,7 @@ impl Keyboard {
                 }
             }
         })?;
-        Ok(Self { chunks, rest: Vec::new(), ended: false })
+        Ok(Self { chunks, pending: Vec::new(), ended: false })
     }
 }
 
@@ -43,9 +43,9 @@ impl Port for Keyboard {
             thread::sleep(wait);
             return Ok(Received::Nothing);
         }
-        if self.rest.is_empty() {
+        if self.pending.is_empty() {
             match self.chunks.recv_timeout(wait) {
-                Ok(chunk) => self.rest = chunk,
+                Ok(chunk) => self.pending = chunk,
                 Err(RecvTimeoutError::Timeout) => return Ok(Received::Nothing),
                 Err(RecvTimeoutError::Disconnected) => {
                     self.ended = true;
@@ -53,9 +53,9 @@ impl Port for Keyboard {
                 }
             }
         }
-        let count = self.rest.len().min(buffer.len());
-        let taken = self.rest.drain(..count);
-        buffer.iter_mut().zip(taken).for_each(|(place, byte)| *place = byte);
+        let count = self.pending.len().min(buffer.len());
+        let taken = self.pending.drain(..count);
+        buffer.iter_mut().zip(taken).for_each(|(to, byte)| *to = byte);
         Ok(Received::Bytes(count))
     }
 

@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn errors_are_those_since_the_port_was_opened_also_where_a_counter_goes_round() {
+    fn counts_errors_since_the_port_was_opened_across_a_counter_overflow() {
         let begin = LineErrors { framing: u32::MAX, overruns: 2, parity: 0, breaks: 5 };
         let now = LineErrors { framing: 1, overruns: 2, parity: 0, breaks: 6 };
         assert_eq!(now.since(begin).to_string(), "framing 2 overrun 0 parity 0 break 1");
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn what_is_no_line_has_no_errors_to_tell() {
+    fn a_file_that_is_no_serial_port_has_no_counters() {
         let file = std::fs::File::open("/dev/null").expect("it is there");
         assert_eq!(counted(&file), None);
     }

@@ -21,10 +21,11 @@ const MAX_LINES: usize = 256;
 
 #[derive(Default)]
 pub(crate) struct Panel {
-    begun: Vec<u8>,
+    incomplete: Vec<u8>,
     lines: VecDeque<String>,
-    /// The next lines wait until after this cycle.
+    /// A `wait` line delays the lines after it until this cycle.
     pub(crate) waits: Option<Instant>,
+    /// Reported presses without effect, per controller.
     reported: Vec<usize>,
 }
 
@@ -37,17 +38,17 @@ impl Panel {
         for &byte in bytes {
             match byte {
                 b'\n' | b'\r' => self.end_line(),
-                // One byte more marks it as too long.
-                _ if self.begun.len() <= MAX_LINE => self.begun.push(byte),
+                // One additional byte marks the line as too long.
+                _ if self.incomplete.len() <= MAX_LINE => self.incomplete.push(byte),
                 _ => {}
             }
         }
     }
 
-    /// The last line may have no line feed.
+    /// Also called at the end of input: the last line may have no line feed.
     pub(crate) fn end_line(&mut self) {
-        let begun = std::mem::take(&mut self.begun);
-        let text = String::from_utf8_lossy(&begun).into_owned();
+        let bytes = std::mem::take(&mut self.incomplete);
+        let text = String::from_utf8_lossy(&bytes).into_owned();
         if !text.trim().is_empty() {
             self.lines.push_back(text);
         }
@@ -80,7 +81,7 @@ impl Panel {
     fn apply(&mut self, line: Line, session: &mut Session, status: &mut StatusLine) {
         let clock_hz = session.experiment().config().clock_hz();
         let entered = match line {
-            Line::Nothing => return,
+            Line::Empty => return,
             Line::Help => return status.note(&help()),
             Line::Wait(span) => {
                 self.waits = Some(session.now() + span.cycles(clock_hz));
@@ -147,7 +148,7 @@ mod tests {
         Session::new(&Scenario::from_json(json).expect("reads")).expect("no problems")
     }
 
-    /// Runs as many rounds as the waits need.
+    /// The inputs that the recording of a session with these lines contains.
     fn recorded(typed: &[u8], cycles: u64) -> Vec<(u64, String)> {
         let (mut session, mut panel, mut line) = (session(), Panel::default(), StatusLine::new(false));
         session.advance::<Digest>(Instant(9), &mut []);
@@ -170,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_pressed_in_their_cycles_and_what_means_nothing_is_left_out() {
+    fn executes_lines_in_their_cycles_and_ignores_invalid_ones() {
         let typed = b"press start 20us\ndance\r\n\nwait 1ms\npower 0\nwait 0s\npower 1\npush -3";
         let expected =
             [(10, "start 1"), (30, "start 0"), (1010, "power 0"), (1011, "power 1"), (1010, "push 1")];

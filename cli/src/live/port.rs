@@ -131,7 +131,7 @@ impl Serial {
     /// Opens the port exclusively at 8N1 without flow control and reads the settings back.
     pub(crate) fn open(path: &Path, baud: u32, rs485: Rs485) -> Result<Self, Failure> {
         let name = || path.display().to_string();
-        let failed = |error: io::Error| Failure::Port(name(), error.to_string());
+        let failed = |error: io::Error| Failure::Unusable(name(), error.to_string());
         let set = |mut settings: Settings| -> io::Result<Settings> {
             settings.set_raw();
             settings.set_char_size(CharSize::Bits8);
@@ -146,7 +146,7 @@ impl Serial {
         rustix::termios::ioctl_tiocexcl(&port).map_err(|error| failed(error.into()))?;
         let wanted = port.get_configuration().and_then(set).map_err(failed)?;
         let refused = |why: &str| {
-            Failure::Port(name(), format!("the port does not support {baud} baud, 8N1, raw: {why}"))
+            Failure::Unusable(name(), format!("the port does not support {baud} baud, 8N1, raw: {why}"))
         };
         port.set_configuration(&wanted).map_err(|error| refused(&error.to_string()))?;
         let actual = port.get_configuration().map_err(failed)?;
@@ -162,7 +162,7 @@ impl Serial {
         port.set_write_timeout(WRITE_WAIT).map_err(failed)?;
         if rs485 == Rs485::Kernel {
             kernel_turns(&port).map_err(|error| {
-                Failure::Port(
+                Failure::Unusable(
                     name(),
                     format!("the port cannot switch an RS-485 transceiver: {error}; use --rs485 auto or rts"),
                 )
@@ -256,7 +256,7 @@ impl Socket {
 
     /// Ctrl-C ends the wait for the name and the connection.
     pub(crate) fn connect(address: &str) -> Result<Self, Failure> {
-        let failed = |error: io::Error| Failure::Port(format!("tcp:{address}"), error.to_string());
+        let failed = |error: io::Error| Failure::Unusable(format!("tcp:{address}"), error.to_string());
         let (sender, connected) = sync_channel(1);
         let to = address.to_owned();
         // Name lookup and connecting cannot be interrupted, so a thread does them; it ends with the command.
@@ -335,7 +335,7 @@ impl Listener {
                 "--tcp: other machines can reach {address}; use 127.0.0.1, or --allow-remote to allow them"
             )));
         }
-        let failed = |error: io::Error| Failure::Port(format!("tcp:{address}"), error.to_string());
+        let failed = |error: io::Error| Failure::Unusable(format!("tcp:{address}"), error.to_string());
         let listener = TcpListener::bind(address).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
@@ -457,7 +457,7 @@ mod pty {
         let name = format!("stepscope-serve-pty-{:016x}", hasher.finish());
         let address = std::os::unix::net::SocketAddr::from_abstract_name(name).map_err(failed)?;
         UnixListener::bind_addr(&address).map_err(|error| match error.kind() {
-            ErrorKind::AddrInUse => Failure::Port(
+            ErrorKind::AddrInUse => Failure::Unusable(
                 link.display().to_string(),
                 "a running session of stepscope serve uses this link; end that session, or use another link"
                     .to_owned(),
@@ -481,7 +481,7 @@ mod pty {
 
     impl Pty {
         pub(crate) fn open(link: Option<&Path>, baud: u32) -> Result<Self, Failure> {
-            let failed = |error: io::Error| Failure::Port("pty".to_owned(), error.to_string());
+            let failed = |error: io::Error| Failure::Unusable("pty".to_owned(), error.to_string());
             let opened = || -> io::Result<(OwnedFd, PathBuf)> {
                 let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
                 grantpt(&master)?;
@@ -513,7 +513,7 @@ mod pty {
                 pty.link_to(link).map_err(|error| match error.kind() {
                     ErrorKind::AlreadyExists => {
                         let why = "exists and is not a link to a terminal; remove it, or use another link";
-                        Failure::Port(link.display().to_string(), why.to_owned())
+                        Failure::Unusable(link.display().to_string(), why.to_owned())
                     }
                     _ => Failure::File(link.to_owned(), error),
                 })?;

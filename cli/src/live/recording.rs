@@ -81,7 +81,7 @@ fn rescue<'a>(path: &Path, error: &str, texts: impl Iterator<Item = (&'a PathBuf
     } else {
         format!("saved instead as {}", saved.join(" "))
     };
-    Failure::Port(path.display().to_string(), format!("{error}; {result}"))
+    Failure::Unusable(path.display().to_string(), format!("{error}; {result}"))
 }
 
 const MAX_NAMES: u32 = 100;

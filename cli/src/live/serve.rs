@@ -8,11 +8,12 @@ use super::{
     server::{Pacing, Server, Settings},
 };
 use crate::{
-    failure::Failure,
+    failure::{Failure, plural},
     interrupt,
     output::{self, Outputs},
     quantity::whole,
-    scenarios, terminal,
+    scenarios,
+    terminal::{self, Escaped},
 };
 use clap::Args;
 use std::{
@@ -109,7 +110,12 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
         let record = files.scenario.0.clone();
         let verified = recording::write(&server.session, (&server.clock, &server.times), files)?;
         outputs.commit()?;
-        verified.map_err(|why| Failure::NotRecorded(record, why.to_string()))?;
+        verified.map_err(|why| {
+            let record = Escaped::path(&record);
+            Failure::Check(format!(
+                "{record}: written, but the recording does not reproduce the session: {why}"
+            ))
+        })?;
         server.line.note("recorded");
         if printed.is_ok()
             && let Some(link) = recording::link(&server.session.recording().scenario)
@@ -122,7 +128,11 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let setbacks = server.clock.setbacks();
     if setbacks.count > 0 {
         let ms = server.clock.nanos(setbacks.cycles) as f64 / 1e6;
-        return Err(Failure::NotRealTime(setbacks.count, ms));
+        return Err(Failure::Check(format!(
+            "not in real time: the clock was set back {} time{}, by {ms:.0} ms in total, but the run is exact for its input; use a longer --lag or a lower --pace",
+            setbacks.count,
+            plural(setbacks.count)
+        )));
     }
     Ok(())
 }

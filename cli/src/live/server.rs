@@ -1,7 +1,7 @@
 //! Runs a session in real time (LIVE H1, H2).
 //!
 //! ```text
-//! round   run the model to the clock's cycle, at most 1 ms -> write finished replies -> read bytes, which come after that cycle
+//! round   run the model to the clock's cycle, at most 1 ms -> write complete replies -> read bytes for later cycles
 //! ```
 //!
 //! For stand-alone controllers the bytes are lines on standard input, and nothing is written.
@@ -31,14 +31,16 @@ use stepscope_core::{
     },
 };
 
-/// Limits the cycles, and so the records, per round.
+/// Maximum cycles per round, which limits the records.
 const MAX_ROUND: u64 = 1_000_000;
 const IDLE_WAIT: Duration = Duration::from_millis(5);
-/// With `--pace max`: the host's time to respond before the model goes on.
-const THINKING: Duration = Duration::from_millis(10);
-/// Replies for a host that does not read; the oldest are lost, as on a real line.
-const MAX_WAITING: usize = 1 << 16;
-/// Puts the bytes of several rounds on the line in advance, to wake once per frame rather than per byte.
+/// Interval of [`Port::poll_events`].
+const POLL_TIME: Duration = Duration::from_millis(20);
+/// With `--pace max`: how long the model waits for the host.
+const RESPONSE_TIME: Duration = Duration::from_millis(10);
+/// Maximum bytes of replies for a host that does not read; the oldest are lost, as on a real line.
+const MAX_UNSENT: usize = 1 << 16;
+/// Rounds whose bytes are put on the line in advance, to wake once per frame instead of once per byte.
 const ROUNDS_AHEAD: u64 = 10;
 
 #[derive(Clone, Copy)]
@@ -63,17 +65,27 @@ pub(super) struct Server {
     pub(super) clock: SessionClock,
     watch: StopWatch,
     once: bool,
+    /// The client has disconnected, or standard input has ended, with `once`.
+    input_ended: bool,
+    recording_is_full: bool,
+    /// When the port was last polled for events.
+    polled: Duration,
+    /// When the last bytes came.
+    silent_since: Duration,
     /// Bytes not yet on the line. While it is full nothing is read and the host waits.
     input: Input,
-    /// The client has stopped sending; its last bytes are still buffered.
-    is_leaving: bool,
+    /// Whether the client has stopped sending; its last bytes may still be buffered.
+    client_is_leaving: bool,
     dropped: u64,
-    waiting: VecDeque<u8>,
-    missed: u64,
-    late: Lateness,
+    /// Bytes of replies that the port has not accepted yet.
+    unsent: VecDeque<u8>,
+    /// Bytes of replies dropped because the host does not read.
+    unread: u64,
+    reply_delays: Lateness,
+    /// The last wait for bytes.
     waited: Duration,
-    /// Maximum delay beyond that wait, since the last report.
-    behind: Duration,
+    /// Maximum delay of the model beyond that wait, since the last status line.
+    max_behind: Duration,
     pub(super) times: SessionTimes,
     pub(super) line: StatusLine,
 }
@@ -93,14 +105,18 @@ impl Server {
             clock: SessionClock::new(clock_hz, pace, settings.lag * 1_000_000),
             watch: StopWatch::start(),
             once: settings.once,
+            input_ended: false,
+            recording_is_full: false,
+            polled: Duration::ZERO,
+            silent_since: Duration::ZERO,
             input: Input::default(),
-            is_leaving: false,
+            client_is_leaving: false,
             dropped: 0,
-            waiting: VecDeque::new(),
-            missed: 0,
-            late: Lateness::default(),
+            unsent: VecDeque::new(),
+            unread: 0,
+            reply_delays: Lateness::default(),
             waited: Duration::ZERO,
-            behind: Duration::ZERO,
+            max_behind: Duration::ZERO,
             times: SessionTimes::new(unix_ms(), name, settings.lag, settings.records),
             line: StatusLine::new(settings.progress),
         }
@@ -109,55 +125,22 @@ impl Server {
     pub(super) fn run(&mut self) -> Result<(), Failure> {
         wake_on_time();
         let mut buffer = [0; 4096];
-        let (mut polled, mut silent_since) = (Duration::ZERO, self.watch.elapsed());
-        let (mut has_ended, mut was_recorded) = (false, true);
-        while interrupt::count() == 0 && !(has_ended && self.is_over()) {
-            let wait = self.round(silent_since);
+        while interrupt::count() == 0 && !(self.input_ended && self.is_over()) {
+            let wait = self.advance();
             self.write_replies().map_err(lost)?;
-            let room = self.room().min(buffer.len());
-            let received = match buffer.get_mut(..room) {
+            let free = self.free_input().min(buffer.len());
+            let received = match buffer.get_mut(..free) {
                 Some(free @ [_, ..]) => self.port.read(free, wait),
                 _ => self.port.wait(wait),
             };
-            match received.map_err(lost)? {
-                Received::Bytes(count) => {
-                    silent_since = self.watch.elapsed();
-                    self.catch_up(silent_since)?;
-                    self.take(buffer.get(..count).unwrap_or_default());
-                }
-                Received::Connected => {
-                    has_ended |= self.once && self.is_leaving;
-                    self.drop_input();
-                }
-                Received::Ended => self.is_leaving = true,
-                Received::Gone => {
-                    has_ended = self.once;
-                    self.gone();
-                }
-                Received::Nothing => {}
-            }
-            if self.is_leaving && self.has_left() {
-                has_ended = self.once;
-                self.port.hang_up();
-                self.gone();
-            }
+            self.handle(received.map_err(lost)?, &buffer)?;
             if let Some(panel) = &mut self.panel {
                 panel.execute(&mut self.session, &mut self.line);
             }
-            if was_recorded && !self.session.records_all() {
-                was_recorded = false;
-                self.line
-                    .note("the recording has reached its maximum size: the session continues unrecorded");
-            }
-            if self.watch.elapsed().saturating_sub(polled) > Duration::from_millis(20) {
-                polled = self.watch.elapsed();
-                if let Some(text) = self.port.poll_events() {
-                    self.line.note(&text);
-                }
-            }
-            let Self { line, session, clock, late, behind, port, .. } = self;
+            self.report_events();
+            let Self { line, session, clock, reply_delays, max_behind, port, .. } = self;
             line.update(|| {
-                let text = status(session, (clock, std::mem::take(behind)), late);
+                let text = status(session, (clock, std::mem::take(max_behind)), reply_delays);
                 let errors = port.line_errors().filter(|errors| !errors.is_none());
                 errors.map_or_else(|| text.clone(), |errors| format!("{text}  line errors: {errors}"))
             });
@@ -170,15 +153,56 @@ impl Server {
         Ok(())
     }
 
-    /// New bytes must not come before their time.
-    fn catch_up(&mut self, silent_since: Duration) -> Result<(), Failure> {
-        while matches!(self.pacing, Pacing::Real(_)) && self.round(silent_since).is_zero() {
+    fn handle(&mut self, received: Received, buffer: &[u8]) -> Result<(), Failure> {
+        match received {
+            Received::Bytes(count) => {
+                self.silent_since = self.watch.elapsed();
+                self.catch_up()?;
+                self.receive(buffer.get(..count).unwrap_or_default());
+            }
+            Received::Connected => {
+                self.input_ended |= self.once && self.client_is_leaving;
+                self.drop_input();
+            }
+            Received::Ended => self.client_is_leaving = true,
+            Received::Gone => {
+                self.input_ended = self.once;
+                self.disconnect();
+            }
+            Received::Nothing => {}
+        }
+        if self.client_is_leaving && self.is_client_done() {
+            self.input_ended = self.once;
+            self.port.hang_up();
+            self.disconnect();
+        }
+        Ok(())
+    }
+
+    /// Reports events of the port, and when the recording is full.
+    fn report_events(&mut self) {
+        if !self.recording_is_full && !self.session.records_all() {
+            self.recording_is_full = true;
+            self.line.note("the recording has reached its maximum size: the session continues unrecorded");
+        }
+        let now = self.watch.elapsed();
+        if now.saturating_sub(self.polled) > POLL_TIME {
+            self.polled = now;
+            if let Some(text) = self.port.poll_events() {
+                self.line.note(&text);
+            }
+        }
+    }
+
+    /// Runs the model up to the present, so that new bytes do not reach it too early.
+    fn catch_up(&mut self) -> Result<(), Failure> {
+        while matches!(self.pacing, Pacing::Real(_)) && self.advance().is_zero() {
             self.write_replies().map_err(lost)?;
         }
         Ok(())
     }
 
-    fn take(&mut self, bytes: &[u8]) {
+    fn receive(&mut self, bytes: &[u8]) {
         self.times.chunk(self.watch.nanos(), self.session.now(), bytes.len());
         if let Some(panel) = &mut self.panel {
             panel.receive(bytes);
@@ -187,11 +211,11 @@ impl Server {
         self.input.push(bytes);
     }
 
-    fn room(&self) -> usize {
+    fn free_input(&self) -> usize {
         self.panel.as_ref().map_or_else(|| self.input.room(), Panel::room)
     }
 
-    fn gone(&mut self) {
+    fn disconnect(&mut self) {
         if let Some(panel) = &mut self.panel {
             return panel.end_line();
         }
@@ -199,7 +223,7 @@ impl Server {
         self.drop_input();
     }
 
-    /// The next client must not get the rest of the last one's bytes.
+    /// Drops the input of the last client, so that the next one gets no reply to it.
     fn drop_input(&mut self) {
         let count = self.input.clear();
         if count > 0 {
@@ -208,26 +232,26 @@ impl Server {
                 .note(&format!("dropped {count} bytes that the client sent faster than the line takes them"));
         }
         self.session.hang_up();
-        self.waiting.clear();
-        self.is_leaving = false;
+        self.unsent.clear();
+        self.client_is_leaving = false;
     }
 
-    /// Whether a client's bytes have been processed and answered, as far as it reads.
-    fn has_left(&self) -> bool {
-        let replies = self.port.is_connected() && !self.waiting.is_empty();
+    /// Whether the client's bytes have been processed, and their replies sent if it still reads.
+    fn is_client_done(&self) -> bool {
+        let replies = self.port.is_connected() && !self.unsent.is_empty();
         self.input.is_empty() && !self.session.is_busy() && !replies
     }
 
-    /// Whether the session has ended: for a panel, when all input is processed.
+    /// Whether nothing is pending; only a panel has pending work.
     fn is_over(&self) -> bool {
         let is_last = || self.session.is_idle() || self.session.jogs_without_end();
         self.panel.as_ref().is_none_or(|panel| panel.is_done() && is_last())
     }
 
-    /// The next cycle with something to write or press; no round passes it.
+    /// The next cycle with bytes to write or a line to execute; no round goes beyond it.
     fn deadline(&self) -> Instant {
         let waits = self.panel.as_ref().and_then(|panel| panel.waits);
-        // A process that waits for every byte is scheduled later on a busy system.
+        // Waking for every byte would delay the process on a busy system.
         let due = self.session.deadline_of_round(Cycles(self.round_cycles()));
         waits.map_or(due, |waits| waits.min(due))
     }
@@ -237,15 +261,16 @@ impl Server {
         (clock_hz / 1000).clamp(1, MAX_ROUND)
     }
 
-    /// Returns how long to wait for bytes.
-    fn round(&mut self, silent_since: Duration) -> Duration {
+    /// Runs one round of the model; returns how long to wait for bytes.
+    fn advance(&mut self) -> Duration {
         let now = self.session.now();
         let step = self.round_cycles();
         let (to, wait) = match self.pacing {
             Pacing::Real(_) => {
                 let target = self.clock.target(self.watch.nanos(), now);
                 let behind = self.clock.nanos(Cycles(target.0.saturating_sub(now.0)));
-                self.behind = self.behind.max(Duration::from_nanos(behind).saturating_sub(self.waited));
+                self.max_behind =
+                    self.max_behind.max(Duration::from_nanos(behind).saturating_sub(self.waited));
                 let waits = self.panel.as_ref().and_then(|panel| panel.waits).unwrap_or(Instant::NEVER);
                 let to = target.min(Instant(now.0 + step)).min(waits);
                 self.input.feed(&mut self.session, to + Cycles(ROUNDS_AHEAD * step));
@@ -255,7 +280,9 @@ impl Server {
                 self.input.feed(&mut self.session, now + Cycles(MAX_ROUND));
                 (self.deadline().min(Instant(now.0.saturating_add(MAX_ROUND))), Duration::ZERO)
             }
-            Pacing::Max if self.watch.elapsed().saturating_sub(silent_since) < THINKING => (now, THINKING),
+            Pacing::Max if self.watch.elapsed().saturating_sub(self.silent_since) < RESPONSE_TIME => {
+                (now, RESPONSE_TIME)
+            }
             Pacing::Max if !self.session.is_idle() => (Instant(now.0 + MAX_ROUND), Duration::ZERO),
             Pacing::Max => (now, IDLE_WAIT),
         };
@@ -275,31 +302,31 @@ impl Server {
     fn write_replies(&mut self) -> io::Result<()> {
         let now_ns = self.watch.nanos();
         for reply in self.session.take_replies() {
-            self.waiting.push_back(reply.byte);
+            self.unsent.push_back(reply.byte);
             // A reply ends with its delimiter.
             if reply.byte == 0 {
                 let late = match self.pacing {
                     Pacing::Real(_) => self.clock.late_ns(now_ns, reply.end),
                     Pacing::Max => 0,
                 };
-                self.late.add(late);
+                self.reply_delays.add(late);
                 self.times.reply(&reply, now_ns, late);
             }
         }
         if !self.port.is_connected() {
-            self.waiting.clear();
+            self.unsent.clear();
         }
-        while !self.waiting.is_empty() {
-            let (bytes, _) = self.waiting.as_slices();
+        while !self.unsent.is_empty() {
+            let (bytes, _) = self.unsent.as_slices();
             let written = self.port.write(bytes)?;
             if written == 0 {
                 break;
             }
-            self.waiting.drain(..written);
+            self.unsent.drain(..written);
         }
-        let too_many = self.waiting.len().saturating_sub(MAX_WAITING);
-        self.waiting.drain(..too_many);
-        self.missed += too_many as u64;
+        let too_many = self.unsent.len().saturating_sub(MAX_UNSENT);
+        self.unsent.drain(..too_many);
+        self.unread += too_many as u64;
         Ok(())
     }
 
@@ -314,18 +341,18 @@ impl Server {
         if self.panel.is_none() {
             writeln!(out, "bytes_heard {}", session.received())?;
         }
-        if self.late.count() > 0 {
-            writeln!(out, "replies {} late{}", self.late.count(), self.late)?;
+        if self.reply_delays.count() > 0 {
+            writeln!(out, "replies {} late{}", self.reply_delays.count(), self.reply_delays)?;
         }
         if let Some(errors) = self.port.line_errors() {
             writeln!(out, "line_errors {errors}")?;
         }
-        let stretches = self.clock.setbacks();
-        if stretches.count > 0 {
-            writeln!(out, "stretches {} cycles {}", stretches.count, stretches.cycles.0)?;
+        let setbacks = self.clock.setbacks();
+        if setbacks.count > 0 {
+            writeln!(out, "stretches {} cycles {}", setbacks.count, setbacks.cycles.0)?;
         }
-        if self.missed > 0 {
-            writeln!(out, "reply_bytes_not_read {}", self.missed)?;
+        if self.unread > 0 {
+            writeln!(out, "reply_bytes_not_read {}", self.unread)?;
         }
         if self.dropped > 0 {
             writeln!(out, "bytes_dropped {}", self.dropped)?;
@@ -373,10 +400,10 @@ fn status(session: &Session, (clock, behind): (&SessionClock, Duration), late: &
 }
 
 fn not_real_time(clock: &SessionClock) -> String {
-    let stretches = clock.setbacks();
-    if stretches.count == 0 {
+    let setbacks = clock.setbacks();
+    if setbacks.count == 0 {
         return String::new();
     }
-    let ms = clock.nanos(stretches.cycles) / 1_000_000;
-    format!("  NOT REAL TIME: set back {} times, {ms} ms", stretches.count)
+    let ms = clock.nanos(setbacks.cycles) / 1_000_000;
+    format!("  NOT REAL TIME: set back {} times, {ms} ms", setbacks.count)
 }

@@ -19,11 +19,11 @@ impl StopWatch {
     }
 }
 
-/// Ends waits on time. By default the system may add up to 50 us to combine wake-ups.
+/// Makes waits end on time: by default, Linux adds up to 50 us to combine wake-ups.
 pub(crate) fn wake_on_time() {
     #[cfg(target_os = "linux")]
     {
-        // Systems without it wake later.
+        // Without it, waits end later, which is harmless.
         let _ = rustix::thread::set_current_timer_slack(std::num::NonZeroU64::new(1));
     }
 }

@@ -7,14 +7,14 @@ pub(super) struct Wire {
     pub(super) port: Box<dyn Port>,
     rts: bool,
     pub(super) echo: bool,
-    /// Sent bytes whose echo has not come.
-    own: VecDeque<u8>,
+    /// Sent bytes whose echo has not been received yet.
+    echo_due: VecDeque<u8>,
     collisions: u64,
 }
 
 impl Wire {
     pub(super) fn new(port: Box<dyn Port>, rts: bool, echo: bool) -> Self {
-        Self { port, rts, echo, own: VecDeque::new(), collisions: 0 }
+        Self { port, rts, echo, echo_due: VecDeque::new(), collisions: 0 }
     }
 
     pub(super) const fn collisions(&self) -> u64 {
@@ -26,9 +26,9 @@ impl Wire {
             self.port.set_rts(true)?;
         }
         if self.echo {
-            // A missing echo of the last frame will not come any more.
-            self.own.clear();
-            self.own.extend(bytes);
+            // The echo of an earlier frame can no longer come.
+            self.echo_due.clear();
+            self.echo_due.extend(bytes);
         }
         let written = write_all(&mut *self.port, bytes, within);
         if self.rts {
@@ -38,13 +38,13 @@ impl Wire {
         written
     }
 
-    /// Removes the echo. A different byte is a collision: someone else is sending.
+    /// Removes the echo. A different byte is a collision: another device is sending.
     pub(super) fn without_echo(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut others = Vec::new();
         for &byte in bytes {
-            match self.own.pop_front() {
+            match self.echo_due.pop_front() {
                 None => others.push(byte),
-                Some(own) if own == byte => {}
+                Some(sent) if sent == byte => {}
                 Some(_) => self.collisions += 1,
             }
         }
@@ -57,9 +57,9 @@ mod tests {
     use super::*;
     use crate::live::port::Received;
 
-    struct Noted(std::rc::Rc<std::cell::RefCell<Vec<String>>>);
+    struct Recorder(std::rc::Rc<std::cell::RefCell<Vec<String>>>);
 
-    impl Port for Noted {
+    impl Port for Recorder {
         fn read(&mut self, _: &mut [u8], _: Duration) -> io::Result<Received> {
             Ok(Received::Nothing)
         }
@@ -81,16 +81,16 @@ mod tests {
     }
 
     #[test]
-    fn rts_is_up_until_all_has_left() {
-        let noted = std::rc::Rc::default();
-        let mut wire = Wire::new(Box::new(Noted(std::rc::Rc::clone(&noted))), true, false);
+    fn rts_stays_on_until_all_bytes_are_sent() {
+        let calls = std::rc::Rc::default();
+        let mut wire = Wire::new(Box::new(Recorder(std::rc::Rc::clone(&calls))), true, false);
         wire.write(&[1, 2, 3], Duration::ZERO).expect("it is written");
-        assert_eq!(*noted.borrow(), ["rts true", "[1, 2, 3]", "[3]", "drain", "rts false"]);
+        assert_eq!(*calls.borrow(), ["rts true", "[1, 2, 3]", "[3]", "drain", "rts false"]);
     }
 
     #[test]
-    fn an_echo_is_taken_out_and_a_changed_one_is_a_collision() {
-        let mut wire = Wire::new(Box::new(Noted(std::rc::Rc::default())), false, true);
+    fn removes_the_echo_and_counts_changed_bytes_as_collisions() {
+        let mut wire = Wire::new(Box::new(Recorder(std::rc::Rc::default())), false, true);
         wire.write(&[1, 2, 3], Duration::ZERO).expect("it is written");
         assert!(wire.without_echo(&[1, 9]).is_empty());
         assert_eq!((wire.without_echo(&[3, 4, 5]), wire.collisions()), (vec![4, 5], 1));
