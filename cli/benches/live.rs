@@ -6,7 +6,7 @@
 //! - a day: 86400 s at full speed, 16 channels moving, and the server's memory.
 #![cfg_attr(
     not(target_os = "linux"),
-    allow(dead_code, unused_imports, reason = "processes are looked at in /proc")
+    allow(dead_code, unused_imports, reason = "processes are inspected in /proc")
 )]
 #![allow(clippy::expect_used, clippy::panic, reason = "what is missing ends the measurement")]
 
@@ -34,7 +34,7 @@ const BARS_MS: [f64; 9] = [0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
 
 #[cfg(not(target_os = "linux"))]
 fn main() {
-    println!("processes are looked at in /proc, which only Linux has");
+    println!("processes are inspected in /proc, which only Linux has");
 }
 
 #[cfg(target_os = "linux")]
@@ -81,7 +81,7 @@ fn scenario(controllers: usize, (baud, slot, ticks): (u32, u32, u32), seconds: u
 struct Server {
     child: Child,
     out: BufReader<ChildStdout>,
-    place: String,
+    address: String,
 }
 
 impl Server {
@@ -95,9 +95,9 @@ impl Server {
             .spawn()
             .expect("it starts");
         let mut out = BufReader::new(child.stdout.take().expect("piped"));
-        let mut place = String::new();
-        out.read_line(&mut place).expect("a line");
-        Self { child, out, place: place.trim().to_owned() }
+        let mut address = String::new();
+        out.read_line(&mut address).expect("a line");
+        Self { child, out, address: address.trim().to_owned() }
     }
 
     fn proc(&self, name: &str) -> String {
@@ -106,17 +106,17 @@ impl Server {
 
     /// Seconds on a processor, and seconds waiting for one.
     fn processor_s(&self) -> (f64, f64) {
-        let told = self.proc("schedstat");
-        let mut ns = told.split_whitespace().map(|word| word.parse::<f64>().expect("a number"));
+        let schedstat = self.proc("schedstat");
+        let mut ns = schedstat.split_whitespace().map(|word| word.parse::<f64>().expect("a number"));
         let mut next = || ns.next().expect("a number") / 1e9;
         (next(), next())
     }
 
     /// Current and maximum memory, in MB.
     fn memory_mb(&self) -> (f64, f64) {
-        let told = self.proc("status");
+        let status = self.proc("status");
         let of = |name: &str| {
-            let line = told.lines().find_map(|line| line.strip_prefix(name)).expect("it is told");
+            let line = status.lines().find_map(|line| line.strip_prefix(name)).expect("a row");
             line.split_whitespace().next().and_then(|kb| kb.parse::<f64>().ok()).expect("a number") / 1024.0
         };
         (of("VmRSS:"), of("VmHWM:"))
@@ -125,11 +125,11 @@ impl Server {
     fn end(mut self) -> String {
         let mut kill = Command::new("kill");
         let ended = kill.args(["-TERM", &self.child.id().to_string()]).status();
-        assert!(ended.is_ok_and(|status| status.success()), "it is told to end");
-        let mut said = String::new();
-        self.out.read_to_string(&mut said).expect("text");
+        assert!(ended.is_ok_and(|status| status.success()), "kill fails");
+        let mut output = String::new();
+        self.out.read_to_string(&mut output).expect("text");
         let _ = self.child.wait();
-        said
+        output
     }
 }
 
@@ -143,7 +143,7 @@ impl Drop for Server {
 /// Returns whether every tick is confirmed.
 fn send(scenario: &Path, server: &Server) -> bool {
     let mut send = Command::new(env!("CARGO_BIN_EXE_stepscope"));
-    send.args(["send", text(scenario), "--port", &server.place, "--slack", "5000"]);
+    send.args(["send", text(scenario), "--port", &server.address, "--slack", "5000"]);
     send.stdout(Stdio::null()).status().expect("it runs").success()
 }
 
@@ -191,8 +191,8 @@ fn replies() {
     let (server, sleeper) = (Server::start(&scenario, &[]), Sleeper::start());
     let done = send(&scenario, &server);
     let (_, waited_s) = server.processor_s();
-    let (slept, said) = (sleeper.end(), server.end());
-    let late = said.lines().find(|line| line.starts_with("replies ")).unwrap_or("no replies");
+    let (slept, output) = (sleeper.end(), server.end());
+    let late = output.lines().find(|line| line.starts_with("replies ")).unwrap_or("no replies");
     println!("  {late}\n  sleeper {slept}");
     println!("  the server waited for a processor for {:.1} ms in all; confirmed: {done}\n", 1e3 * waited_s);
 }
@@ -205,16 +205,16 @@ fn load() {
         let server = Server::start(&scenario, &[]);
         let idle = 5.0;
         thread::sleep(Duration::from_secs_f64(idle));
-        let (rested_s, _) = server.processor_s();
+        let (idle_s, _) = server.processor_s();
         let begun = Instant::now();
         let done = send(&scenario, &server);
         let whole_s = begun.elapsed().as_secs_f64();
         let (busy_s, _) = server.processor_s();
         let (memory, _) = server.memory_mb();
         println!(
-            "  {controllers:2} controllers: {:5.2} % at rest, {:5.2} % moving, {memory:.1} MB; confirmed: {done}",
-            100.0 * rested_s / idle,
-            100.0 * (busy_s - rested_s) / whole_s
+            "  {controllers:2} controllers: {:5.2} % idle, {:5.2} % moving, {memory:.1} MB; confirmed: {done}",
+            100.0 * idle_s / idle,
+            100.0 * (busy_s - idle_s) / whole_s
         );
         drop(server);
     }
@@ -231,12 +231,12 @@ fn day() {
         "line": { "protocol": "framed", "address": 0, "baud": 9600 } }"#;
     println!("a day of session at full speed, 16 channels moving");
     let server = Server::start(&file("live-day.json", json), &["--pace", "max"]);
-    let mut port = TcpStream::connect(server.place.trim_start_matches("tcp:")).expect("it listens");
+    let mut port = TcpStream::connect(server.address.trim_start_matches("tcp:")).expect("it listens");
     port.set_nodelay(true).expect("a socket");
-    let orders: Vec<u8> =
+    let commands: Vec<u8> =
         (0..16 * TICKS as usize).map(|index| (1 + index % 3) as u8 | (index as u8 & 1) << 7).collect();
-    let mut ask = |kind: Kind, body: &[u8]| {
-        port.write_all(&emit(0, kind as u8, body)).expect("it is heard");
+    let mut request = |kind: Kind, body: &[u8]| {
+        port.write_all(&emit(0, kind as u8, body)).expect("a server");
         let (mut reply, mut byte) = (Vec::new(), [1]);
         while byte[0] != 0 {
             port.read_exact(&mut byte).expect("a reply");
@@ -247,14 +247,14 @@ fn day() {
     let begun = Instant::now();
     let frames = HOURS * 3_600_000 / (TICK_MS * TICKS);
     println!("  session  memory now   at most   bytes so far   time taken");
-    let (mut told, mut settled_mb) = (0, f64::MAX);
+    let (mut reported, mut settled_mb) = (0, f64::MAX);
     for frame in 0..=frames {
         let hours = frame * TICK_MS * TICKS / 3_600_000;
-        if frame == 0 || hours > told && [1, 2, 3, 6, 12, 18, HOURS].contains(&hours) {
-            told = hours;
-            let ((now, most), body) = (server.memory_mb(), 2 + orders.len() as u64);
+        if frame == 0 || hours > reported && [1, 2, 3, 6, 12, 18, HOURS].contains(&hours) {
+            reported = hours;
+            let ((now, max), body) = (server.memory_mb(), 2 + commands.len() as u64);
             println!(
-                "  {hours:5} h {now:9.1} MB {most:6.1} MB {:12.1} MB {:10.1} s",
+                "  {hours:5} h {now:9.1} MB {max:6.1} MB {:12.1} MB {:10.1} s",
                 (frame * body) as f64 / 1e6,
                 begun.elapsed().as_secs_f64()
             );
@@ -265,9 +265,9 @@ fn day() {
             assert!(hours < 3 || now < 1.2 * settled_mb, "the server grows");
         }
         if frame < frames {
-            let ticks = Ticks::emit(frame as u8, 16, &orders);
+            let ticks = Ticks::emit(frame as u8, 16, &commands);
             // The queue holds two frames; a refused frame is repeated.
-            while ask(Kind::Ticks, &ticks).get(2) == Some(&0xff) {}
+            while request(Kind::Ticks, &ticks).get(2) == Some(&0xff) {}
         }
     }
     println!(

@@ -55,11 +55,11 @@ fn pairs(text: &str) -> Result<Vec<Pair>, String> {
         .trim(csv::Trim::All)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
     let head = reader.headers().map_err(|error| error.to_string())?.clone();
-    let place = |name: &str| head.iter().position(|field| field == name);
-    let length = LENGTHS.iter().find_map(|(name, mm)| Some((place(name)?, *name, *mm)));
+    let column = |name: &str| head.iter().position(|field| field == name);
+    let length = LENGTHS.iter().find_map(|(name, mm)| Some((column(name)?, *name, *mm)));
     let missing = "use a first row with the columns length_mm (or length_cm, length_m) and steps";
-    let (length, length_name, mm) = length.ok_or_else(|| format!("no column of lengths; {missing}"))?;
-    let steps = place("steps").ok_or_else(|| format!("no column steps; {missing}"))?;
+    let (length, length_name, mm) = length.ok_or_else(|| format!("no column has lengths; {missing}"))?;
+    let steps = column("steps").ok_or_else(|| format!("there is no column steps; {missing}"))?;
     let mut pairs = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| error.to_string())?;
@@ -80,12 +80,12 @@ fn print(found: &Calibration, pairs: &[Pair]) -> io::Result<()> {
     let mut out = terminal::out();
     writeln!(out, "pairs               {}", pairs.len())?;
     writeln!(out, "steps = k*length")?;
-    fit(&found.through_origin, pairs, &mut out)?;
+    print_fit(&found.through_origin, pairs, &mut out)?;
     writeln!(out, "steps = k*length + offset")?;
-    let beside = &found.with_offset;
-    let offset_mm = beside.offset_steps / beside.steps_per_unit;
-    writeln!(out, "  offset            {:.3} steps, {offset_mm:.6} mm", beside.offset_steps)?;
-    fit(beside, pairs, &mut out)?;
+    let with_offset = &found.with_offset;
+    let offset_mm = with_offset.offset_steps / with_offset.steps_per_unit;
+    writeln!(out, "  offset            {:.3} steps, {offset_mm:.6} mm", with_offset.offset_steps)?;
+    print_fit(with_offset, pairs, &mut out)?;
     let step_mm = 1.0 / found.through_origin.steps_per_unit;
     writeln!(out, "\"mechanics\": {{ \"direct\": {{ \"step_mm\": {step_mm} }} }}")
 }
@@ -95,7 +95,7 @@ fn digits(number: f64, decimals: usize) -> String {
     if (1e-3..1e9).contains(&number) { format!("{number:.decimals$}") } else { format!("{number:.9e}") }
 }
 
-fn fit(fit: &Fit, pairs: &[Pair], out: &mut impl Write) -> io::Result<()> {
+fn print_fit(fit: &Fit, pairs: &[Pair], out: &mut impl Write) -> io::Result<()> {
     let k = fit.steps_per_unit;
     writeln!(out, "  k                 {} steps/mm, {} mm per step", digits(k, 6), digits(1.0 / k, 9))?;
     writeln!(out, "  r.m.s. residual   {:.3} steps, {:.6} mm", fit.rms(), fit.rms() / k)?;

@@ -145,7 +145,7 @@ fn torque_demands(
     planned: Option<&Scenario>,
 ) -> Vec<AxisDemand> {
     let none = Scenario { source: Source::Segments(SegmentLists::default()), ..Scenario::default() };
-    let scenario = arguments.named.named(planned.unwrap_or(&none));
+    let scenario = arguments.named.applied_to(planned.unwrap_or(&none));
     let demand = |channel: u8| {
         let machine = Machine::of_channel(&scenario, 0, channel.into())?;
         Some(AxisDemand::of_steps(channel, machine, &recording.steps_of(channel), recording.clock_hz))

@@ -78,7 +78,7 @@ fn line(template: &str, file: impl Fn(&str) -> String, instead: Option<(&str, St
 }
 
 #[test]
-fn no_output_of_any_command_may_be_one_of_its_inputs_or_another_output() {
+fn no_output_may_be_an_input_or_another_output() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = |name: &str| folder.path().join(name).display().to_string();
     let checked =
@@ -113,7 +113,7 @@ fn no_output_of_any_command_may_be_one_of_its_inputs_or_another_output() {
 
 /// A new numeric option needs a type of quantity.rs.
 #[test]
-fn every_option_of_a_number_refuses_what_is_none() {
+fn every_number_option_rejects_invalid_numbers() {
     let mut all = Vec::new();
     commands(&crate::command_line(), "", &mut all);
     let mut tried = 0;

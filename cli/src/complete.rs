@@ -63,10 +63,7 @@ fn presets(given: &OsStr) -> Vec<CompletionCandidate> {
 }
 
 fn samples(given: &OsStr) -> Vec<CompletionCandidate> {
-    candidates(
-        given,
-        SAMPLES.iter().map(|sample| (sample.id, "recording that comes with the command".to_owned())),
-    )
+    candidates(given, SAMPLES.iter().map(|sample| (sample.id, "included recording".to_owned())))
 }
 
 fn drivers(given: &OsStr) -> Vec<CompletionCandidate> {

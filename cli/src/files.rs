@@ -32,7 +32,6 @@ pub(crate) trait Output: Sink {
     fn finish(self: Box<Self>, experiment: &Experiment, run: &Run) -> io::Result<()>;
 }
 
-/// Writes a line per record.
 struct RecordWriter<F> {
     out: Out,
     write_record: F,

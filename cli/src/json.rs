@@ -24,8 +24,8 @@ impl Tables {
 
     pub(crate) fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let version = env!("CARGO_PKG_VERSION");
-        let whole = json!({ "stepscope": version, "command": self.command, "tables": self.tables });
-        writeln!(out, "{}", terminal::json(&format!("{whole:#}")))
+        let document = json!({ "stepscope": version, "command": self.command, "tables": self.tables });
+        writeln!(out, "{}", terminal::json(&format!("{document:#}")))
     }
 
     pub(crate) fn print(&self) -> Result<(), Failure> {

@@ -3,7 +3,7 @@
 use crate::{
     failure::{Failure, Numbered, no_plant},
     json::Tables,
-    motors::Replacing,
+    motors::MotorReplacement,
     options::{Json, Out, Work},
     output, parallel,
     progress::Progress,
@@ -37,7 +37,7 @@ pub(crate) struct Common {
     #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
     channel: Option<usize>,
     #[command(flatten)]
-    replacing: Replacing,
+    replacing: MotorReplacement,
     #[command(flatten)]
     json: Json,
     #[command(flatten)]

@@ -24,7 +24,7 @@ use stepscope_core::{
 };
 
 #[derive(Args)]
-pub(crate) struct Replacing {
+pub(crate) struct MotorReplacement {
     /// Replace all motors with this one, at its rated current
     ///
     /// `stepscope plant --motors` lists the motors. Supply and load do not change.
@@ -38,7 +38,7 @@ pub(crate) struct Replacing {
 }
 
 #[derive(Args)]
-pub(crate) struct Named {
+pub(crate) struct NamedMotor {
     /// Replace all motors with this one, at its rated current
     ///
     /// `stepscope plant --motors` lists the motors. Supply and load do not change; if the scenario has no motor, they are
@@ -50,21 +50,21 @@ pub(crate) struct Named {
     pub(crate) microsteps: Option<u16>,
 }
 
-impl Named {
-    pub(crate) fn put_into(&self, scenario: &mut Scenario) {
+impl NamedMotor {
+    pub(crate) fn apply_to(&self, scenario: &mut Scenario) {
         let Some(motor) = self.motor else { return };
         motor.put_into(scenario);
         let motors = scenario.plant.iter_mut().flat_map(|plant| &mut plant.motors);
         motors.for_each(|entry| entry.microsteps = self.microsteps.unwrap_or(entry.microsteps));
     }
 
-    pub(crate) fn named<'a>(&self, scenario: &'a Scenario) -> Cow<'a, Scenario> {
+    pub(crate) fn applied_to<'a>(&self, scenario: &'a Scenario) -> Cow<'a, Scenario> {
         if self.motor.is_none() {
             return Cow::Borrowed(scenario);
         }
         let mut scenario = scenario.clone();
         scenario.plant.get_or_insert_default();
-        self.put_into(&mut scenario);
+        self.apply_to(&mut scenario);
         Cow::Owned(scenario)
     }
 }
@@ -79,18 +79,18 @@ fn drive_parser() -> impl TypedValueParser<Value = &'static DriveSheet> {
     PossibleValuesParser::new(values).try_map(|id| motors::drive(&id).ok_or("unknown driver"))
 }
 
-fn has_plant(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
+fn check_plant(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
     scenario.plant.as_ref().map(|_| ()).ok_or_else(|| no_plant(path))
 }
 
-impl Replacing {
+impl MotorReplacement {
     /// The scenario with these motors, which must have a plant; `-` is standard input.
     pub(crate) fn validated(&self, path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
         if self.motor.is_none() && self.motor_driver.is_none() {
-            return scenarios::validated_after(path, |scenario| has_plant(path, scenario));
+            return scenarios::validated_after(path, |scenario| check_plant(path, scenario));
         }
         let mut scenario = scenarios::read(path)?;
-        has_plant(path, &scenario)?;
+        check_plant(path, &scenario)?;
         if let Some(motor) = self.motor {
             motor.put_into(&mut scenario);
         }
@@ -128,10 +128,10 @@ pub(crate) fn list(as_json: bool) -> Result<(), Failure> {
         let tables = Tables::of("plant").with("motors", MOTORS.iter().map(motor));
         return tables.with("drives", DRIVES.iter().map(drive)).print();
     }
-    write(&mut terminal::out()).map_err(Failure::output)
+    print_list(&mut terminal::out()).map_err(Failure::output)
 }
 
-fn write(out: &mut impl Write) -> io::Result<()> {
+fn print_list(out: &mut impl Write) -> io::Result<()> {
     for sheet in MOTORS {
         writeln!(out, "{:14} {}", sheet.id, sheet.name)?;
         writeln!(
@@ -146,7 +146,7 @@ fn write(out: &mut impl Write) -> io::Result<()> {
             sheet.friction_mn_m,
             sheet.viscous_un_m_s
         )?;
-        sources(out, sheet.source, sheet.typical)?;
+        print_sources(out, sheet.source, sheet.typical)?;
     }
     writeln!(out, "\ndrivers")?;
     for sheet in DRIVES {
@@ -156,8 +156,8 @@ fn write(out: &mut impl Write) -> io::Result<()> {
             out,
             "{:14} {}, {} decay, fast share {}, off {} us, blank {} us, bridge {} ohm, diode {} V{}",
             "",
-            word(&drive.regulator),
-            word(&drive.decay),
+            json_text(&drive.regulator),
+            json_text(&drive.decay),
             drive.decay_share,
             drive.off_us,
             drive.blank_us,
@@ -165,17 +165,17 @@ fn write(out: &mut impl Write) -> io::Result<()> {
             drive.diode_v,
             drive.dac_levels.map(|levels| format!(", converter of {levels} steps")).unwrap_or_default()
         )?;
-        sources(out, sheet.source, sheet.typical)?;
+        print_sources(out, sheet.source, sheet.typical)?;
     }
     Ok(())
 }
 
 /// The value as in a scenario's JSON.
-fn word(value: &impl Compact) -> String {
+fn json_text(value: &impl Compact) -> String {
     value.compact().as_str().unwrap_or_default().to_owned()
 }
 
-fn sources(out: &mut impl Write, source: &str, typical: &[&str]) -> io::Result<()> {
+fn print_sources(out: &mut impl Write, source: &str, typical: &[&str]) -> io::Result<()> {
     writeln!(out, "{:14} {source}", "")?;
     writeln!(out, "{:14} typical values, not from the data sheet: {}", "", typical.join(", "))
 }

@@ -25,11 +25,14 @@ pub(crate) type Out = BufWriter<Box<dyn Write>>;
 
 #[derive(Default)]
 pub(crate) struct Outputs {
-    waiting: Vec<Waiting>,
+    pending: Vec<PendingFile>,
 }
 
-struct Waiting {
+/// A file with its temporary name until all are complete.
+struct PendingFile {
+    /// As on the command line.
     given: PathBuf,
+    /// With symbolic links resolved.
     name: PathBuf,
     temporary: TempPath,
 }
@@ -37,36 +40,36 @@ struct Waiting {
 #[derive(PartialEq)]
 enum Identity {
     /// An existing file, by any path or hard link.
-    There(identity::Id),
-    /// A new file, by its real folder.
+    Existing(identity::Id),
+    /// A new file, in a folder with links resolved.
     New(PathBuf),
 }
 
 impl Identity {
     fn of_input(path: &Path) -> Option<Self> {
         if path == Path::new(STANDARD) {
-            return identity::stdin().and_then(|file| identity::of_file(&file)).map(Self::There);
+            return identity::stdin().and_then(|file| identity::of_file(&file)).map(Self::Existing);
         }
-        is_file(path).then(|| identity::of(path)).flatten().map(Self::There)
+        is_file(path).then(|| identity::of(path)).flatten().map(Self::Existing)
     }
 
     fn of_output(path: &Path) -> Option<Self> {
         if path == Path::new(STANDARD) {
-            return identity::stdout().and_then(|file| identity::of_file(&file)).map(Self::There);
+            return identity::stdout().and_then(|file| identity::of_file(&file)).map(Self::Existing);
         }
-        let name = followed(path);
+        let name = resolve_links(path);
         if name == Path::new("/dev/null") {
             return None;
         }
         if let Some(id) = identity::of(&name) {
-            return Some(Self::There(id));
+            return Some(Self::Existing(id));
         }
         let folder = fs::canonicalize(folder(&name)).ok()?;
         Some(Self::New(folder.join(name.file_name()?)))
     }
 }
 
-/// Nothing is opened: a pipe can be opened only once, and opening a terminal connects a client to it.
+/// Opens nothing: a pipe can be opened only once, and opening a terminal connects a client to it.
 #[cfg(unix)]
 mod identity {
     use super::{File, Path, fs, io};
@@ -139,7 +142,7 @@ impl Outputs {
                 };
                 return Err(Failure::Output(path.to_owned(), detail));
             }
-            // A terminal may be both.
+            // A terminal may be input and output.
             if identity.as_ref().is_some_and(|identity| inputs.contains(identity)) && is_file(path) {
                 return Err(Failure::Output(
                     path.to_owned(),
@@ -160,7 +163,7 @@ impl Outputs {
         if path == Path::new(STANDARD) {
             return Ok(Box::new(io::stdout()));
         }
-        let name = followed(path);
+        let name = resolve_links(path);
         if is_folder_name(&name) {
             return Err(io::ErrorKind::IsADirectory.into());
         }
@@ -191,7 +194,7 @@ impl Outputs {
         if let Some(known) = known {
             fs::set_permissions(&temporary, known.permissions())?;
         }
-        self.waiting.push(Waiting { given: path.to_owned(), name, temporary });
+        self.pending.push(PendingFile { given: path.to_owned(), name, temporary });
         Ok(Box::new(file))
     }
 
@@ -200,9 +203,9 @@ impl Outputs {
     /// the names.
     pub(crate) fn commit(self) -> Result<Vec<PathBuf>, Failure> {
         let mut committed = committed();
-        let mut waiting = self.waiting.into_iter();
+        let mut pending = self.pending.into_iter();
         let (mut replaced, mut written) = (Vec::<Replaced>::new(), Vec::new());
-        while let Some(next) = waiting.next() {
+        while let Some(next) = pending.next() {
             let (path, given) = (next.temporary.to_path_buf(), next.given.clone());
             let failed = match Replaced::by(next) {
                 Ok(done) => {
@@ -217,8 +220,12 @@ impl Outputs {
             let mut kept: Vec<TempPath> = replaced.into_iter().rev().filter_map(Replaced::restore).collect();
             kept.reverse();
             kept.push(temporary);
-            kept.extend(waiting.map(|waiting| waiting.temporary));
-            return Err(Failure::NotRenamed(given, error, kept.into_iter().filter_map(keep).collect()));
+            kept.extend(pending.map(|file| file.temporary));
+            return Err(Failure::NotRenamed(
+                given,
+                error,
+                kept.into_iter().filter_map(keep_temporary).collect(),
+            ));
         }
         *committed |= !replaced.is_empty();
         Ok(written)
@@ -226,7 +233,7 @@ impl Outputs {
 }
 
 /// `None` if the file is gone.
-fn keep(temporary: TempPath) -> Option<PathBuf> {
+fn keep_temporary(temporary: TempPath) -> Option<PathBuf> {
     let path = temporary.keep().ok()?;
     lock().retain(|other| *other != path);
     path.exists().then_some(path)
@@ -247,7 +254,7 @@ struct Replaced {
 }
 
 impl Replaced {
-    fn by(Waiting { given, name, temporary }: Waiting) -> Result<Self, Box<NotRenamed>> {
+    fn by(PendingFile { given, name, temporary }: PendingFile) -> Result<Self, Box<NotRenamed>> {
         let existed = fs::symlink_metadata(&name).is_ok();
         let mut builder = tempfile::Builder::new();
         builder.prefix("stepscope.").suffix(".old");
@@ -290,7 +297,7 @@ pub(crate) fn write_new(path: &Path, write: impl FnOnce(&mut Out) -> io::Result<
     let mut out = outputs.create(path)?;
     write(&mut out).and_then(|()| out.flush()).map_err(|error| Failure::File(path.to_owned(), error))?;
     drop(out);
-    progress::say_written(&outputs.commit()?);
+    progress::print_written(&outputs.commit()?);
     Ok(())
 }
 
@@ -301,7 +308,7 @@ fn folder(path: &Path) -> &Path {
     }
 }
 
-fn followed(path: &Path) -> PathBuf {
+fn resolve_links(path: &Path) -> PathBuf {
     let mut path = path.to_owned();
     for _ in 0..MAX_LINKS {
         if is_open_file(&path) {
@@ -320,7 +327,7 @@ fn is_open_file(path: &Path) -> bool {
 }
 
 pub(crate) fn can_be_file(path: &Path) -> bool {
-    let name = followed(path);
+    let name = resolve_links(path);
     path != Path::new(STANDARD)
         && !is_open_file(&name)
         && !is_folder_name(&name)
@@ -359,9 +366,9 @@ pub(crate) fn remove_temporary() {
 mod tests {
     use super::*;
 
-    /// A folder takes the last name while the files are written, or its folder disappears.
+    /// A folder takes one of the names, or the folder of one file disappears, while the files are written.
     #[test]
-    fn files_that_cannot_all_be_renamed_replace_nothing_and_are_kept() {
+    fn a_failed_rename_restores_old_files_and_keeps_the_new_ones() {
         for (taken, is_late) in [("folder", false), ("file/inside", true)] {
             let folder = tempfile::tempdir().expect("a folder");
             let path = |name: &str| folder.path().join(name);
@@ -396,10 +403,10 @@ mod tests {
         }
     }
 
-    /// The system reports that a terminal was opened and closed.
+    /// The system reports whether a terminal was opened and closed.
     #[test]
     #[cfg(target_os = "linux")]
-    fn the_terminal_behind_a_link_is_not_opened_by_the_check() {
+    fn checks_a_terminal_behind_a_link_without_opening_it() {
         use rustix::{
             event::{PollFd, PollFlags, Timespec, poll},
             pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},

@@ -55,16 +55,16 @@ pub(crate) fn csv(
     text = text.trim_end().to_owned() + &names.collect::<String>() + "\n";
     out.write_all(text.as_bytes())?;
     let row = Row { cycle: None, levels: Levels::RESET };
-    Ok(Box::new(Table { out, clock_hz, channels, signals, row, result: Ok(()) }))
+    Ok(Box::new(TableWriter { out, clock_hz, channels, signals, row, result: Ok(()) }))
 }
 
-/// A row collects everything of one cycle, so it may still change.
+/// The changes of one cycle; the row is written when the next cycle begins.
 struct Row {
     cycle: Option<Instant>,
     levels: Levels,
 }
 
-struct Table {
+struct TableWriter {
     out: Out,
     clock_hz: u32,
     channels: u8,
@@ -73,8 +73,8 @@ struct Table {
     result: io::Result<()>,
 }
 
-impl Table {
-    fn at(&mut self, cycle: Instant) {
+impl TableWriter {
+    fn begin_row(&mut self, cycle: Instant) {
         if self.row.cycle != Some(cycle) {
             self.end_row();
             self.row.cycle = Some(cycle);
@@ -96,21 +96,21 @@ impl Table {
     }
 }
 
-impl Sink for Table {
+impl Sink for TableWriter {
     fn record(&mut self, record: Record) {
-        self.at(record.cycle);
+        self.begin_row(record.cycle);
         self.row.levels = record.levels;
     }
 
     fn event(&mut self, at: Instant, event: Event) {
         if matches!(event, Event::Panel { .. } | Event::Input { .. }) {
-            self.at(at);
+            self.begin_row(at);
             self.signals.take(event);
         }
     }
 }
 
-impl Output for Table {
+impl Output for TableWriter {
     fn has_failed(&self) -> bool {
         self.result.is_err()
     }
@@ -131,15 +131,15 @@ pub(crate) fn vcd(
     let words = signals.signals().iter().map(|signal| (signal.name.as_str(), signal.bits));
     let mut writer = VcdWriter::with_words(out, timescale, clock_hz, channels, words)?;
     writer.words(0, signals.signals().iter().map(|signal| signal.value));
-    Ok(Box::new(Dump { writer, signals }))
+    Ok(Box::new(DumpWriter { writer, signals }))
 }
 
-struct Dump {
+struct DumpWriter {
     writer: VcdWriter<Out>,
     signals: PanelSignals,
 }
 
-impl Sink for Dump {
+impl Sink for DumpWriter {
     fn record(&mut self, record: Record) {
         self.writer.record(record);
     }
@@ -151,7 +151,7 @@ impl Sink for Dump {
     }
 }
 
-impl Output for Dump {
+impl Output for DumpWriter {
     fn has_failed(&self) -> bool {
         self.writer.has_failed()
     }

@@ -15,21 +15,21 @@ use std::{
 /// More threads cost memory and gain nothing.
 const MAX_THREADS_PER_CORE: usize = 4;
 
-/// One per core by default, at most four times as many; standard error reports a limited number.
-fn threads(wanted: Option<NonZero<usize>>) -> usize {
+/// One per core by default, at most four per core. Reports on standard error if the number is reduced.
+fn threads(requested: Option<NonZero<usize>>) -> usize {
     let cores = available_parallelism().map_or(1, NonZero::get);
-    let most = MAX_THREADS_PER_CORE * cores;
-    let wanted = wanted.map_or(cores, NonZero::get);
-    if wanted > most {
+    let max = MAX_THREADS_PER_CORE * cores;
+    let requested = requested.map_or(cores, NonZero::get);
+    if requested > max {
         static ONCE: Once = Once::new();
         ONCE.call_once(|| {
             let _ = writeln!(
                 terminal::err(),
-                "--threads: {wanted} is more than {MAX_THREADS_PER_CORE} per core; using {most}, with the same result"
+                "--threads: {requested} is more than {MAX_THREADS_PER_CORE} per core; {max} are used, with the same result"
             );
         });
     }
-    wanted.min(most)
+    requested.min(max)
 }
 
 /// Runs `make` for each number below `count`; the results are in order.
@@ -39,7 +39,7 @@ pub(crate) fn each<R: Send>(
     progress: &mut Progress,
     make: impl Fn(u64) -> R + Sync,
 ) -> io::Result<Vec<R>> {
-    let job = shown(count, progress, make);
+    let job = with_progress(count, progress, make);
     Ok(pool(threads)?.install(|| (0..count).into_par_iter().map(&job).collect()))
 }
 
@@ -51,16 +51,20 @@ pub(crate) fn sum<R: Default + Send, E: Send>(
     make: impl Fn(u64) -> Result<R, E> + Sync,
     add: impl Fn(Result<R, E>, Result<R, E>) -> Result<R, E> + Sync,
 ) -> io::Result<Result<R, E>> {
-    let job = shown(count, progress, make);
+    let job = with_progress(count, progress, make);
     let pool = pool(threads)?;
     Ok(pool.install(|| (0..count).into_par_iter().map(&job).reduce(|| Ok(R::default()), &add)))
 }
 
-fn pool(wanted: Option<NonZero<usize>>) -> io::Result<ThreadPool> {
-    ThreadPoolBuilder::new().num_threads(threads(wanted)).build().map_err(io::Error::other)
+fn pool(requested: Option<NonZero<usize>>) -> io::Result<ThreadPool> {
+    ThreadPoolBuilder::new().num_threads(threads(requested)).build().map_err(io::Error::other)
 }
 
-fn shown<R>(count: u64, progress: &mut Progress, make: impl Fn(u64) -> R + Sync) -> impl Fn(u64) -> R + Sync {
+fn with_progress<R>(
+    count: u64,
+    progress: &mut Progress,
+    make: impl Fn(u64) -> R + Sync,
+) -> impl Fn(u64) -> R + Sync {
     let progress = Mutex::new((progress, 0));
     move |number| {
         let result = make(number);
@@ -76,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_more_than_four_threads_per_core_are_used() {
+    fn uses_at_most_four_threads_per_core() {
         let cores = available_parallelism().map_or(1, NonZero::get);
         assert_eq!(threads(None), cores);
         assert_eq!(threads(NonZero::new(1)), 1);
@@ -85,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn the_order_is_that_of_the_numbers_on_any_number_of_threads() {
+    fn returns_results_in_order_on_any_number_of_threads() {
         for threads in [1, 2, 7] {
             let mut progress = Progress::new("numbers", false);
             let results = each(1000, NonZero::new(threads), &mut progress, |number| number * number);

@@ -3,7 +3,7 @@
 use crate::{
     failure::{Failure, Numbered, no_plant},
     json::Tables,
-    motors::{self, Replacing},
+    motors::{self, MotorReplacement},
     options::{Json, ShowProgress},
     output::{Out, Outputs, STANDARD},
     progress::Progress,
@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     #[arg(required_unless_present = "motors")]
     scenario: Option<PathBuf>,
     #[command(flatten)]
-    replacing: Replacing,
+    replacing: MotorReplacement,
     /// List the motors and motor drivers with their parameters and sources
     #[arg(long, conflicts_with_all = ["scenario", "motor", "motor_driver", "controller", "digest", "csv", "vcd"])]
     motors: bool,
@@ -78,14 +78,14 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Clone, Default)]
-struct Files(Rc<RefCell<Open>>);
+struct Files(Rc<RefCell<OpenFiles>>);
 
 #[derive(Default)]
-struct Open {
+struct OpenFiles {
     csv: Option<(PathBuf, Out, io::Result<()>)>,
     vcd: Option<(PathBuf, VcdWriter<Out>)>,
     every: u64,
-    wait: u64,
+    skipped_points: u64,
 }
 
 impl Sink for Files {
@@ -102,8 +102,8 @@ impl Observer for Files {
         if open.csv.is_none() && open.vcd.is_none() {
             return;
         }
-        open.wait = (open.wait + 1) % open.every.max(1);
-        if open.wait != 0 {
+        open.skipped_points = (open.skipped_points + 1) % open.every.max(1);
+        if open.skipped_points != 0 {
             return;
         }
         if let Some((_, out, result)) = &mut open.csv
@@ -160,7 +160,7 @@ fn open(
     plant: &Plant,
     experiment: &Experiment,
 ) -> Result<Files, Failure> {
-    let mut opened = Open { every: arguments.every.get(), ..Open::default() };
+    let mut opened = OpenFiles { every: arguments.every.get(), ..OpenFiles::default() };
     if let Some(path) = &arguments.csv {
         let mut out = outputs.create(path)?;
         let result = out.write_all(table_head(plant).as_bytes());
@@ -199,7 +199,7 @@ fn print<S: Sink, O: Observer>(
     let clock_hz = setup.clock_hz;
     let mut out = io::BufWriter::new(terminal::out());
     writeln!(out, "plant digest     {:016x}", result.digest)?;
-    writeln!(out, "points to        {:.3} ms, cycle {}", ms(result.cycle, clock_hz), result.cycle)?;
+    writeln!(out, "simulated to     {:.3} ms, cycle {}", ms(result.cycle, clock_hz), result.cycle)?;
     let (load, bus) = (&result.load_a, &result.bus_v);
     writeln!(out, "supply current   {:.3} to {:.3} A, r.m.s. {:.3} A", load.min, load.max, load.rms())?;
     writeln!(out, "bus              {:.3} to {:.3} V", bus.min, bus.max)?;
@@ -207,7 +207,7 @@ fn print<S: Sink, O: Observer>(
         let Deviation { rest_a, above_a, below_a } = found;
         writeln!(
             out,
-            "  deviation      +{above_a:.3} A, -{below_a:.3} A from {rest_a:.3} A at rest, behind the sensor"
+            "  deviation      +{above_a:.3} A, -{below_a:.3} A from {rest_a:.3} A at rest, as the sensor measures it"
         )?;
     }
     if let Some(at) = result.collapsed {

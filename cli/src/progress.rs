@@ -18,15 +18,15 @@ const LENGTH: u64 = 1000;
 #[derive(Clone, Copy, PartialEq)]
 enum Style {
     Bar,
-    /// Lines of percents, for a program that reads them.
+    /// A line per percent, for programs.
     Lines,
     Hidden,
 }
 
 impl Style {
-    /// A bar for a person at a terminal; elsewhere nothing, unless it is `wanted`.
-    fn of(wanted: bool) -> Self {
-        match (io::stderr().is_terminal() && std::env::var_os("CI").is_none(), wanted) {
+    /// A bar on a terminal; elsewhere nothing, or lines if requested.
+    fn new(is_requested: bool) -> Self {
+        match (io::stderr().is_terminal() && std::env::var_os("CI").is_none(), is_requested) {
             (true, _) => Self::Bar,
             (false, true) => Self::Lines,
             (false, false) => Self::Hidden,
@@ -35,7 +35,7 @@ impl Style {
 }
 
 pub(crate) struct Progress {
-    what: &'static str,
+    command: &'static str,
     style: Style,
     start: Instant,
     /// Equal parts of the work, and those that are done.
@@ -46,9 +46,9 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    pub(crate) fn new(what: &'static str, wanted: bool) -> Self {
-        let (style, start) = (Style::of(wanted), Instant::now());
-        Self { what, style, start, parts: 1, done: 0, bar: None, percent: None }
+    pub(crate) fn new(command: &'static str, is_requested: bool) -> Self {
+        let (style, start) = (Style::new(is_requested), Instant::now());
+        Self { command, style, start, parts: 1, done: 0, bar: None, percent: None }
     }
 
     pub(crate) fn with_parts(mut self, parts: usize) -> Self {
@@ -73,14 +73,14 @@ impl Progress {
             Style::Bar if self.start.elapsed() < DELAY => {}
             Style::Bar => {
                 let at = of(LENGTH);
-                self.bar.get_or_insert_with(|| bar(self.what, self.start.elapsed())).set_position(at);
+                self.bar.get_or_insert_with(|| bar(self.command, self.start.elapsed())).set_position(at);
             }
             Style::Lines => {
                 let percent = of(100);
                 if self.percent.is_none_or(|before| before < percent) {
                     self.percent = Some(percent);
                     // If standard error is closed, progress is not needed.
-                    let _ = writeln!(io::stderr(), "{}: {percent:3} %", self.what);
+                    let _ = writeln!(io::stderr(), "{}: {percent:3} %", self.command);
                 }
             }
         }
@@ -96,7 +96,7 @@ impl Progress {
             return;
         }
         let files = Files(written);
-        let _ = writeln!(terminal::err(), "{}: {done} in {:.1} s{files}", self.what, took.as_secs_f64());
+        let _ = writeln!(terminal::err(), "{}: {done} in {:.1} s{files}", self.command, took.as_secs_f64());
     }
 }
 
@@ -108,15 +108,15 @@ impl Drop for Progress {
     }
 }
 
-fn bar(what: &'static str, elapsed: Duration) -> ProgressBar {
+fn bar(command: &'static str, elapsed: Duration) -> ProgressBar {
     let style = ProgressStyle::with_template(TEMPLATE).unwrap_or_else(|_| ProgressStyle::default_bar());
-    let bar = ProgressBar::new(LENGTH).with_style(style.progress_chars("#> ")).with_prefix(what);
+    let bar = ProgressBar::new(LENGTH).with_style(style.progress_chars("#> ")).with_prefix(command);
     bar.with_elapsed(elapsed)
 }
 
-/// Tells a person at a terminal what quick work has written.
-pub(crate) fn say_written(written: &[PathBuf]) {
-    if !written.is_empty() && Style::of(false) == Style::Bar {
+/// On a terminal, names the files that quick work has written.
+pub(crate) fn print_written(written: &[PathBuf]) {
+    if !written.is_empty() && Style::new(false) == Style::Bar {
         let text = Files(written).to_string();
         let _ = writeln!(terminal::err(), "{}", text.trim_start_matches("; "));
     }
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_part_begins_where_the_one_before_it_ended() {
+    fn each_part_continues_the_percentage_of_the_last() {
         let mut progress = Progress::new("parts", false).with_parts(4);
         progress.style = Style::Lines;
         let mut seen = Vec::new();
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_line_names_the_files() {
+    fn lists_the_written_files() {
         let paths = ["a.vcd", "b\u{1b}.csv"].map(PathBuf::from);
         assert_eq!(Files(&paths).to_string(), "; wrote a.vcd, b\\u{1b}.csv");
         assert_eq!(Files(&[]).to_string(), "");

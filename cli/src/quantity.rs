@@ -1,20 +1,13 @@
 //! Number types of the command line, one per quantity, with a finite range. NaN and values out of range are usage
 //! errors.
 //!
-//! ```text
-//! --within-us NaN     not a number; use 0 to 1000000000 microseconds
-//! --within-us=-1      out of range; use 0 to 1000000000 microseconds
-//! ```
-//!
-//! An option takes its type (`error_us: Option<Microseconds>`) and needs no `value_parser`. A new quantity is one more row below.
-//! An option of a whole number has the `value_parser` [`whole`].
+//! An option has such a type (`error_us: Option<Microseconds>`), or for a whole number the `value_parser` [`whole`].
 
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 use stepscope_core::{capture::read::decimal::Decimal, inspect::recording::tolerance::Tolerance};
 
 macro_rules! quantities {
-    ($($(#[$doc:meta])* $name:ident: $range:expr, $unit:literal;)*) => {$(
-        $(#[$doc])*
+    ($($name:ident: $range:expr, $unit:literal;)*) => {$(
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub(crate) struct $name(f64);
 
@@ -108,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_finite_numbers_in_range_are_taken() {
+    fn accepts_only_finite_numbers_in_range() {
         let range = "use 0 to 1000000000 microseconds";
         for (text, expected) in [
             ("0", Ok(0.0)),
@@ -136,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn only_whole_numbers_in_range_are_taken() {
+    fn accepts_only_whole_numbers_in_range() {
         let parse = whole::<u8>(1..=16);
         assert_eq!(parse("16"), Ok(16));
         for text in ["0", "17", "-1", "256", "18446744073709551616", "-99999999999999999999999"] {

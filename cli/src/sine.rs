@@ -151,20 +151,21 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
     })
 }
 
-struct Placed {
+/// A sine of a scenario, with its axis and the number of its move.
+struct ScenarioSine {
     axis: usize,
     index: usize,
     sine: SineSegments,
 }
 
-fn sines(scenario: &Path, only: Option<usize>) -> Result<Vec<Placed>, Failure> {
+fn sines(scenario: &Path, only: Option<usize>) -> Result<Vec<ScenarioSine>, Failure> {
     let (_, experiment) = scenarios::validated_after(scenario, |given| has_sines(scenario, given, only))?;
     let plans = experiment.plans();
     let axes = plans.iter().enumerate().filter(|(axis, _)| only.is_none_or(|only| only == *axis));
-    let found: Vec<Placed> = axes
+    let found: Vec<ScenarioSine> = axes
         .flat_map(|(axis, plan)| {
             plan.moves().iter().enumerate().filter_map(move |(index, planned)| match &planned.profile {
-                Profile::SineSegments(sine) => Some(Placed { axis, index, sine: sine.clone() }),
+                Profile::SineSegments(sine) => Some(ScenarioSine { axis, index, sine: sine.clone() }),
                 _ => None,
             })
         })
@@ -189,20 +190,19 @@ fn has_sines(path: &Path, scenario: &Scenario, only: Option<usize>) -> Result<()
     Err(Failure::Scenario(path.to_owned(), vec![problem]))
 }
 
-/// Each segment of a quarter (DESIGN B5); the others follow by symmetry.
-fn segments(sines: &[Placed], as_json: bool, out: &mut impl Write) -> io::Result<()> {
-    let rows = sines.iter().flat_map(|placed| {
-        let Memory { segments: segment_bytes, intervals } = placed.sine.memory();
-        placed
-            .sine
+/// The segments of a quarter of each sine; the other quarters follow by symmetry (DESIGN B5).
+fn segments(sines: &[ScenarioSine], as_json: bool, out: &mut impl Write) -> io::Result<()> {
+    let rows = sines.iter().flat_map(|sine| {
+        let Memory { segments: segment_bytes, intervals } = sine.sine.memory();
+        sine.sine
             .segments()
             .iter()
             .enumerate()
-            .map(move |(number, segment)| (placed, number, *segment, segment_bytes, intervals))
+            .map(move |(number, segment)| (sine, number, *segment, segment_bytes, intervals))
     });
     if as_json {
         let rows =
-            rows.map(|(Placed { axis, index, .. }, number, segment, segment_bytes, interval_bytes)| {
+            rows.map(|(ScenarioSine { axis, index, .. }, number, segment, segment_bytes, interval_bytes)| {
                 json!({
                     "axis": axis,
                     "move": index,
@@ -218,13 +218,13 @@ fn segments(sines: &[Placed], as_json: bool, out: &mut impl Write) -> io::Result
                     "quarter_bytes_as_intervals": interval_bytes,
                 })
             });
-        return json_of("sine segments", "segments", rows).write(out);
+        return table("sine segments", "segments", rows).write(out);
     }
     writeln!(
         out,
         "axis,move,segment,from_point,to_point,from_deg,to_deg,steps,rate_steps_s,duration_s,quarter_bytes,quarter_bytes_as_intervals"
     )?;
-    for (Placed { axis, index, .. }, number, segment, segment_bytes, interval_bytes) in rows {
+    for (ScenarioSine { axis, index, .. }, number, segment, segment_bytes, interval_bytes) in rows {
         let Segment { from, to, from_deg, to_deg, steps, rate, duration_s, .. } = segment;
         writeln!(
             out,
@@ -234,7 +234,7 @@ fn segments(sines: &[Placed], as_json: bool, out: &mut impl Write) -> io::Result
     Ok(())
 }
 
-fn json_of(command: &'static str, table: &str, rows: impl IntoIterator<Item = Value>) -> Tables {
+fn table(command: &'static str, table: &str, rows: impl IntoIterator<Item = Value>) -> Tables {
     Tables::of(command).with(table, rows)
 }
 
@@ -249,15 +249,15 @@ fn sweep(range: &Range, points: u32) -> Result<Vec<Row>, Failure> {
 
 fn best(range: &Range, only: Option<usize>) -> Result<Row, Failure> {
     let (from, to) = range.ends()?;
-    let (mut least, mut most) = (usize::MAX, 0);
+    let (mut min, mut max) = (usize::MAX, 0);
     let rows = Distinct::new(from, to, range.bounds()).inspect(|row| {
-        (least, most) = (least.min(row.segments), most.max(row.segments));
+        (min, max) = (min.min(row.segments), max.max(row.segments));
     });
     let best = sine_polyline::best(rows.filter(|row| only.is_none_or(|only| only == row.segments)));
     best.ok_or_else(|| {
         let given = only.unwrap_or(0);
         let why = format!(
-            "--segments: {given} is out of range for deviations from {from} to {to}; use {least} to {most}, or another range"
+            "--segments: {given} is out of range for deviations from {from} to {to}; use {min} to {max}, or another range"
         );
         Failure::Option(why)
     })
@@ -265,21 +265,17 @@ fn best(range: &Range, only: Option<usize>) -> Result<Row, Failure> {
 
 fn polylines(command: &'static str, range: &Range, rows: &[Row], out: &mut impl Write) -> io::Result<()> {
     if range.common.written.json.json {
-        return json_of(command, "polylines", rows.iter().map(cells)).write(out);
+        return table(command, "polylines", rows.iter().map(json_row)).write(out);
     }
-    head(range, out)?;
-    rows.iter().try_for_each(|found| row(found, out))
-}
-
-fn head(range: &Range, out: &mut impl Write) -> io::Result<()> {
     let filtered = if range.sensor_hz.is_some() { ",thd_acceleration_filtered_percent" } else { "" };
     writeln!(
         out,
         "d1,segments,thd_position_percent,thd_speed_percent,thd_acceleration_percent,euclidean_distance{filtered}"
-    )
+    )?;
+    rows.iter().try_for_each(|row| print_row(row, out))
 }
 
-fn row(row: &Row, out: &mut impl Write) -> io::Result<()> {
+fn print_row(row: &Row, out: &mut impl Write) -> io::Result<()> {
     let distortion = row.distortion;
     let [position, speed, acceleration] =
         [distortion.position, distortion.speed, distortion.acceleration].map(|ratio| ratio * 100.0);
@@ -294,7 +290,7 @@ fn row(row: &Row, out: &mut impl Write) -> io::Result<()> {
     writeln!(out)
 }
 
-fn cells(row: &Row) -> Value {
+fn json_row(row: &Row) -> Value {
     let distortion = row.distortion;
     json!({
         "d1": row.d1,
@@ -309,14 +305,14 @@ fn cells(row: &Row) -> Value {
 
 fn vertices(segments: usize, freedom: Freedom, common: &Common, out: &mut impl Write) -> io::Result<()> {
     let found = optimum(segments, freedom, common.order)
-        .ok_or_else(|| io::Error::other("no such number of segments"))?;
+        .ok_or_else(|| io::Error::other("no polyline has this number of segments"))?;
     let percent = found.distortion.position * 100.0;
     if common.written.json.json {
         let rows = found.vertices.iter().enumerate().map(|(index, vertex)| {
             let angle_deg = vertex.angle.to_degrees();
             json!({ "vertex": index, "angle_deg": angle_deg, "height": vertex.height, "thd_position_percent": percent })
         });
-        return json_of("sine vertices", "vertices", rows).write(out);
+        return table("sine vertices", "vertices", rows).write(out);
     }
     writeln!(out, "vertex,angle_deg,height,thd_position_percent")?;
     for (index, vertex) in found.vertices.iter().enumerate() {

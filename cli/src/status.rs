@@ -48,8 +48,8 @@ pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables 
             "crashes": host.crashes,
         })
     });
-    let all = summary.stand_alone.iter().flat_map(|all| &all.panels).enumerate();
-    let panels = all.map(|(index, panel)| {
+    let all_panels = || summary.stand_alone.iter().flat_map(|summary| &summary.panels).enumerate();
+    let panels = all_panels().map(|(index, panel)| {
         json!({
             "controller": index,
             "state": panel.state.name(),
@@ -62,8 +62,7 @@ pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables 
             "presses_without_meaning": panel.ignored.len(),
         })
     });
-    let all = summary.stand_alone.iter().flat_map(|all| &all.panels).enumerate();
-    let ignored = all.flat_map(|(index, panel)| {
+    let ignored = all_panels().flat_map(|(index, panel)| {
         panel.ignored.iter().map(move |press| {
             json!({
                 "controller": index,

@@ -6,7 +6,7 @@ use stepscope_core::motion::ScheduledStep;
 /// Possible columns of a time, with units per second; `None` for clock cycles.
 const TIMES: [(&str, Option<u32>); 4] =
     [("cycle", None), ("time_s", Some(1)), ("time_ms", Some(1000)), ("time_us", Some(1_000_000))];
-/// An unknown direction column would be ignored, so the long name is accepted, too.
+/// Also accepted, because an unknown column would be ignored silently.
 const DIRECTION: &str = "dir";
 const DIRECTION_IN_FULL: &str = "direction";
 const MAX_DIGITS: usize = 12;
@@ -64,12 +64,12 @@ fn cycle(text: &str, per_second: Option<u32>, clock_hz: u32) -> Option<u64> {
         return None;
     }
     let digits: u128 = format!("{whole}{fraction}").parse().ok()?;
-    let (over, under) = match per_second {
+    let (numerator, denominator) = match per_second {
         Some(per_second) => (digits.checked_mul(clock_hz.into())?, u128::from(per_second)),
         None => (digits, 1),
     };
-    let under = under * 10_u128.pow(fraction.len() as u32);
-    let cycle = over.checked_mul(2)?.checked_add(under)? / (2 * under);
+    let denominator = denominator * 10_u128.pow(fraction.len() as u32);
+    let cycle = numerator.checked_mul(2)?.checked_add(denominator)? / (2 * denominator);
     u64::try_from(cycle).ok().filter(|cycle| u128::from(*cycle) <= MAX_CYCLE)
 }
 
@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_rounded_by_their_decimals_half_up() {
+    fn rounds_decimal_times_half_up() {
         let rows: [(&str, Option<u32>, Option<u64>); 9] = [
             ("17", None, Some(17)),
             ("16.5", None, Some(17)),
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn a_table_has_a_step_per_row_or_an_error() {
+    fn reads_a_step_per_row_or_reports_the_line() {
         let step = |cycle, right| ScheduledStep { cycle, right };
         let found = steps_of_table("# a capture\ntime_us, dir\n10,1\n20.5, left\n", 1_000_000);
         assert_eq!(found, Ok(vec![step(10, true), step(21, false)]));

@@ -1,12 +1,12 @@
 //! Suggests the known name that is most similar to an unknown one.
 
 /// Below this similarity a name is not a misspelling.
-const MIN_LIKENESS: f64 = 0.85;
+const MIN_SIMILARITY: f64 = 0.85;
 
 pub(crate) fn nearest<'a>(given: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let likeness = |name: &'a str| (strsim::jaro_winkler(given, name), name);
-    let likely = known.into_iter().map(likeness).filter(|(likeness, _)| *likeness > MIN_LIKENESS);
-    likely.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, name)| name)
+    let similarity = |name: &'a str| (strsim::jaro_winkler(given, name), name);
+    let similar = known.into_iter().map(similarity).filter(|(similarity, _)| *similarity > MIN_SIMILARITY);
+    similar.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, name)| name)
 }
 
 /// `; a similar name is NAME`, or nothing.
@@ -19,7 +19,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_is_suggested_if_it_is_nearly_the_given_one() {
+    fn suggests_only_similar_names() {
         let known = ["slots", "channels", "step_period_cycles", "settle_cycles"];
         for (given, expected) in [
             ("slot", Some("slots")),

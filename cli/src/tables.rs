@@ -70,7 +70,7 @@ pub(crate) struct Arguments {
     ///
     /// q16 has 20 bytes and a resolution of 1/65536 cycle, q8 has 8 bytes and 1/256 cycle, ticks has 8 bytes and whole
     /// cycles. klipper is another name for ticks: the arguments of Klipper's queue_step.
-    #[arg(long, value_name = "FORMAT", value_parser = widths)]
+    #[arg(long, value_name = "FORMAT", value_parser = entry_format)]
     entries: Option<EntryFormat>,
     /// Output format
     #[arg(long, value_enum, default_value = "summary", conflicts_with = "json")]
@@ -84,7 +84,7 @@ pub(crate) struct Arguments {
     /// digit or an underscore. Names that C reserves are refused. They begin with is, to, str, mem, wcs or e and a
     /// letter, with e and a digit, or with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_ or
     /// tss_.
-    #[arg(long, value_parser = name, conflicts_with = "json")]
+    #[arg(long, value_parser = table_name, conflicts_with = "json")]
     name: Option<String>,
     #[command(flatten)]
     json: Json,
@@ -163,13 +163,13 @@ impl Written {
     }
 }
 
-fn widths(text: &str) -> Result<EntryFormat, String> {
+fn entry_format(text: &str) -> Result<EntryFormat, String> {
     let name = if text == "klipper" { EntryFormat::TICKS.name } else { text };
     let found = EntryFormat::ALL.into_iter().find(|format| format.name == name);
     found.ok_or_else(|| "unknown format; use q16, q8, ticks or klipper".to_owned())
 }
 
-fn name(text: &str) -> Result<String, String> {
+fn table_name(text: &str) -> Result<String, String> {
     if is_name(text) {
         Ok(text.to_owned())
     } else {
@@ -209,24 +209,22 @@ impl Axes {
         let (interval_part, search) = (arguments.interval_part, arguments.search);
         let tolerance = Tolerance { cycles, interval_part, side: arguments.window.side() };
         let pulse = PulseTimes::from(&config);
-        if let Some(list) = &arguments.steps {
+        let (path, title, axes) = if let Some(list) = &arguments.steps {
             let steps = steps_of_table(&scenarios::text(list)?, clock_hz)
-                .map_err(|what| Failure::Invalid(list.clone(), what))?;
+                .map_err(|why| Failure::Invalid(list.clone(), why))?;
             let title = list.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-            let axes = vec![Steps::Listed(steps)];
-            return Ok(Self { path: list.clone(), title, clock_hz, pulse, axes, tolerance, search });
-        }
-        if let Some(run_steps) = run_steps {
-            let axes = run_steps.into_iter().map(Steps::Listed).collect();
-            return Ok(Self { path, title, clock_hz, pulse, axes, tolerance, search });
-        }
-        let axes = match &source {
-            ScenarioSource::Motion(Motion { axes, .. }) => axes.as_slice(),
-            _ => &[],
+            (list.clone(), title, vec![Steps::Listed(steps)])
+        } else if let Some(run_steps) = run_steps {
+            (path, title, run_steps.into_iter().map(Steps::Listed).collect())
+        } else {
+            let axes = match &source {
+                ScenarioSource::Motion(Motion { axes, .. }) => axes.as_slice(),
+                _ => &[],
+            };
+            let plans = plan_lists([("source.motion.axes".to_owned(), axes)]);
+            let plans = plans.map_err(of_motion).map_err(wrong)?;
+            (path, title, plans.into_iter().flatten().map(Steps::Planned).collect())
         };
-        let plans =
-            plan_lists([("source.motion.axes".to_owned(), axes)]).map_err(of_motion).map_err(wrong)?;
-        let axes = plans.into_iter().flatten().map(Steps::Planned).collect();
         Ok(Self { path, title, clock_hz, pulse, axes, tolerance, search })
     }
 
@@ -243,7 +241,7 @@ impl Axes {
         }
     }
 
-    fn refused(&self, axis: usize, cause: Cause) -> Failure {
+    fn failure(&self, axis: usize, cause: Cause) -> Failure {
         if let Some(Steps::Listed(_)) = self.axes.get(axis) {
             return Failure::Invalid(self.path.clone(), cause.to_string());
         }
@@ -279,15 +277,15 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     let Some(language) = arguments.format.language() else {
         return output::write_new(&arguments.out.out, |out| {
             if arguments.json.json {
-                json_of(&axes, arguments).write(out)
+                json_tables(&axes, arguments).write(out)
             } else {
-                summary(&axes, arguments, out)
+                print_summary(&axes, arguments, out)
             }
         });
     };
     let form = arguments.form.unwrap_or(FormName::Compressed);
     let format = arguments.entries.unwrap_or(EntryFormat::Q16);
-    let table = axes.stored(steps, form, format).map_err(|cause| axes.refused(axis, cause))?;
+    let table = axes.stored(steps, form, format).map_err(|cause| axes.failure(axis, cause))?;
     let name = arguments.name.clone().unwrap_or_else(|| format!("axis_{axis}"));
     let title = headline(&axes.title, axis, form.name());
     let source = Source { name: &name, title: &title, clock_hz: axes.clock_hz, table: &table };
@@ -301,8 +299,8 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// For each axis, form and width, the table or the reason why there is none.
-fn each<'a>(
+/// The table of each axis, form and entry format, or the reason why there is none.
+fn all_tables<'a>(
     axes: &'a Axes,
     arguments: &'a Arguments,
 ) -> impl Iterator<Item = (usize, FormName, EntryFormat, Result<Stored, Cause>)> + 'a {
@@ -320,24 +318,24 @@ fn each<'a>(
     })
 }
 
-fn summary(axes: &Axes, arguments: &Arguments, out: &mut impl Write) -> io::Result<()> {
+fn print_summary(axes: &Axes, arguments: &Arguments, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "axis form       entries    count        bytes  document_bytes      steps  largest_error_us  rms_error_us    turns  wire_bytes  surplus"
     )?;
-    for (axis, form, format, table) in each(axes, arguments) {
+    for (axis, form, format, table) in all_tables(axes, arguments) {
         write!(out, "{axis:4} {:10} {:7}", form.name(), format.name)?;
         match table {
-            Ok(table) => row(&table, axes.clock_hz, out)?,
+            Ok(table) => print_row(&table, axes.clock_hz, out)?,
             Err(cause) => writeln!(out, "  {cause}")?,
         }
     }
     Ok(())
 }
 
-fn json_of(axes: &Axes, arguments: &Arguments) -> Tables {
+fn json_tables(axes: &Axes, arguments: &Arguments) -> Tables {
     let micros = |cycles: f64| cycles * 1e6 / f64::from(axes.clock_hz.max(1));
-    let rows = each(axes, arguments).map(|(axis, form, format, table)| {
+    let rows = all_tables(axes, arguments).map(|(axis, form, format, table)| {
         let why = table.as_ref().err().map(ToString::to_string);
         let table = table.as_ref().ok();
         json!({
@@ -359,7 +357,7 @@ fn json_of(axes: &Axes, arguments: &Arguments) -> Tables {
     Tables::of("tables").with("tables", rows)
 }
 
-fn row(table: &Stored, clock_hz: u32, out: &mut impl Write) -> io::Result<()> {
+fn print_row(table: &Stored, clock_hz: u32, out: &mut impl Write) -> io::Result<()> {
     let shown = |number: Option<u64>| number.map_or_else(|| "-".to_owned(), |number| number.to_string());
     let micros = |cycles: f64| round_half_up(cycles * 1e9 / f64::from(clock_hz)) as f64 / 1e3;
     writeln!(

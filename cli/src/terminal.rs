@@ -10,23 +10,23 @@ use std::{
 };
 use stepscope_core::inspect::export::plain_text::is_unsafe;
 
-pub(crate) fn out() -> Text<StdoutLock<'static>> {
-    Text { to: io::stdout().lock(), split: Vec::new() }
+pub(crate) fn out() -> EscapingWriter<StdoutLock<'static>> {
+    EscapingWriter { to: io::stdout().lock(), incomplete: Vec::new() }
 }
 
-pub(crate) fn err() -> Text<StderrLock<'static>> {
-    Text { to: io::stderr().lock(), split: Vec::new() }
+pub(crate) fn err() -> EscapingWriter<StderrLock<'static>> {
+    EscapingWriter { to: io::stderr().lock(), incomplete: Vec::new() }
 }
 
 /// Escapes unsafe characters, but not line feeds and tabs.
-pub(crate) struct Text<W> {
+pub(crate) struct EscapingWriter<W> {
     to: W,
-    /// The first bytes of an incomplete character.
-    split: Vec<u8>,
+    /// The first bytes of a character that continues in the next write.
+    incomplete: Vec<u8>,
 }
 
-impl<W: Write> Text<W> {
-    fn put(&mut self, text: &str) -> io::Result<()> {
+impl<W: Write> EscapingWriter<W> {
+    fn write_escaped(&mut self, text: &str) -> io::Result<()> {
         let mut rest = text;
         while let Some(at) = rest.find(|c| is_unsafe(c) && !matches!(c, '\n' | '\t')) {
             let (plain, from) = rest.split_at(at);
@@ -41,17 +41,17 @@ impl<W: Write> Text<W> {
     }
 }
 
-impl<W: Write> Write for Text<W> {
+impl<W: Write> Write for EscapingWriter<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let mut joined = std::mem::take(&mut self.split);
+        let mut joined = std::mem::take(&mut self.incomplete);
         joined.extend_from_slice(bytes);
         for chunk in joined.utf8_chunks() {
-            self.put(chunk.valid())?;
+            self.write_escaped(chunk.valid())?;
             let invalid = chunk.invalid();
             let is_last = invalid.as_ptr_range().end == joined.as_ptr_range().end;
             // Up to three bytes at the end may be the start of a character.
             if is_last && std::str::from_utf8(invalid).is_err_and(|error| error.error_len().is_none()) {
-                self.split = invalid.to_vec();
+                self.incomplete = invalid.to_vec();
             } else {
                 invalid.iter().try_for_each(|byte| write!(self.to, "\\x{byte:02x}"))?;
             }
@@ -89,8 +89,8 @@ impl<T: fmt::Display> fmt::Display for Escaped<T> {
     }
 }
 
-/// Escapes the same characters as JSON does, so the meaning stays. Outside its strings, JSON contains only line
-/// feeds.
+/// Escapes the same characters in the text of a JSON document, whose value does not change. Outside of strings, the
+/// only such characters are line feeds.
 pub(crate) fn json(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
@@ -109,13 +109,13 @@ mod tests {
     use super::*;
 
     fn written(pieces: &[&[u8]]) -> String {
-        let mut text = Text { to: Vec::new(), split: Vec::new() };
+        let mut text = EscapingWriter { to: Vec::new(), incomplete: Vec::new() };
         pieces.iter().for_each(|piece| text.write_all(piece).expect("memory takes it"));
         String::from_utf8(text.to).expect("it is text")
     }
 
     #[test]
-    fn control_characters_are_printed_as_their_numbers() {
+    fn prints_control_characters_as_numbers() {
         let rows: [(&str, &str); 6] = [
             ("a\tb\n", "a\tb\n"),
             ("\u{1b}]0;x\u{7}", "\\u{1b}]0;x\\u{7}"),
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn escaped_json_means_the_same() {
+    fn escaped_json_has_the_same_value() {
         let given = serde_json::json!({ "title": "\u{9b}2J\u{202e}\u{7f} ü \u{1b}\n" });
         let text = json(&format!("{given:#}"));
         assert!(!text.chars().any(|c| is_unsafe(c) && c != '\n'), "{text}");

@@ -49,13 +49,13 @@ pub(crate) struct Options {
 const CUSTOM: &str = "custom:";
 
 /// A listed driver, `custom:field=ns,...`, or a JSON file.
-fn driver(path: &Path) -> Result<TimingRules, String> {
+fn parse_driver(path: &Path) -> Result<TimingRules, String> {
     let text = path.to_str().unwrap_or_default();
     if let Some(sheet) = DRIVERS.into_iter().find(|sheet| sheet.id == text) {
         return Ok(sheet.rules.clone());
     }
     if let Some(fields) = text.strip_prefix(CUSTOM) {
-        return custom(fields);
+        return parse_limits(fields);
     }
     let read = scenarios::text(path).map_err(|error| match error {
         Failure::File(_, error) if error.kind() == io::ErrorKind::NotFound => {
@@ -66,26 +66,29 @@ fn driver(path: &Path) -> Result<TimingRules, String> {
         Failure::File(_, error) => error.to_string(),
         error => error.to_string(),
     })?;
-    rules_of(serde_json::from_str(&read).map_err(|error| format!("not JSON: {error}; {}", allowed()))?)
+    parse_rules(
+        serde_json::from_str(&read).map_err(|error| format!("not JSON: {error}; {}", allowed_limits()))?,
+    )
 }
 
-fn custom(fields: &str) -> Result<TimingRules, String> {
+fn parse_limits(fields: &str) -> Result<TimingRules, String> {
     let mut rules = serde_json::Map::new();
     for field in fields.split(',') {
         let (name, ns) =
-            field.split_once('=').ok_or_else(|| format!("{field:?}: no \"=\"; {}", allowed()))?;
+            field.split_once('=').ok_or_else(|| format!("{field:?}: no \"=\"; {}", allowed_limits()))?;
         let (name, ns) = (name.trim(), ns.trim());
-        let value: u64 =
-            ns.parse().map_err(|_| format!("{name}: {ns:?} is not a whole number of ns; {}", allowed()))?;
+        let value: u64 = ns
+            .parse()
+            .map_err(|_| format!("{name}: {ns:?} is not a whole number of ns; {}", allowed_limits()))?;
         if rules.insert(name.to_owned(), value.into()).is_some() {
             return Err(format!("{name} is given twice; use it once"));
         }
     }
-    rules_of(Value::Object(rules))
+    parse_rules(Value::Object(rules))
 }
 
 /// Accepts a scenario's `driver_timing`, with or without that name and `rules` around the limits.
-fn rules_of(found: Value) -> Result<TimingRules, String> {
+fn parse_rules(found: Value) -> Result<TimingRules, String> {
     let inner = found.get("driver_timing").cloned().unwrap_or(found);
     let is_whole = inner.get("rules").is_some() || inner.get("preset").is_some();
     let timing = if is_whole { inner } else { json!({ "rules": inner }) };
@@ -97,12 +100,12 @@ fn rules_of(found: Value) -> Result<TimingRules, String> {
         None => {
             let problems: Vec<String> = problems.iter().map(with_hint).collect();
             let problems = if problems.is_empty() { "no limits".to_owned() } else { problems.join("; ") };
-            Err(format!("{problems}; {}", allowed()))
+            Err(format!("{problems}; {}", allowed_limits()))
         }
     }
 }
 
-fn allowed() -> String {
+fn allowed_limits() -> String {
     let fields = Rule::ALL.map(|rule| format!("{}_ns", rule.name())).join(", ");
     format!("use {fields}, each 0 to 1000000000")
 }
@@ -118,7 +121,7 @@ impl Options {
         }
         let own = || scenario.driver_timing.as_ref().map(drivers::rules);
         let wrong = |given: &Path, why| Failure::Option(format!("--driver: {}: {why}", given.display()));
-        let named = self.driver.as_deref().map(|given| driver(given).map_err(|why| wrong(given, why)));
+        let named = self.driver.as_deref().map(|given| parse_driver(given).map_err(|why| wrong(given, why)));
         let rules = named.transpose()?.or_else(own);
         rules.map(Some).ok_or_else(|| {
             let why = "the scenario has no driver; use --driver (`stepscope drivers` lists the drivers)";
@@ -166,11 +169,11 @@ pub(crate) fn tables(tables: Tables, check: &TimingCheck, unit: TimeUnit) -> Tab
     let rule = |result: &RuleResult| {
         let least = result.shortest.as_ref();
         let required = (result.nanos > 0).then_some(result.nanos);
-        let spare = required.and_then(|required| Some(unit.over(least?.measured, required).nanos()));
+        let spare = required.and_then(|required| Some(unit.slack(least?.measured, required).nanos()));
         json!({
             "rule": result.rule.name(),
             "required_ns": required,
-            "least_ns": least.map(|least| unit.over(least.measured, 0).nanos()),
+            "least_ns": least.map(|least| unit.slack(least.measured, 0).nanos()),
             "spare_ns": spare,
             "at_cycle": least.map(|least| unit.cycle(least.at)),
             "channel": least.map(|least| least.channel),
@@ -231,19 +234,32 @@ pub(crate) fn write_violations(mut out: Out, check: &TimingCheck, unit: TimeUnit
         let (channel, rule) = (found.channel, found.rule.name());
         let (measured, required) = (unit.cycles(found.measured), unit.cycles_up(found.required));
         let required_ns = check.results().get(found.rule as usize).map_or(0, |result| result.nanos);
-        let nanos = unit.over(found.measured, 0);
+        let nanos = unit.slack(found.measured, 0);
         writeln!(out, "{cycle},{time},{channel},{rule},{measured},{required},{nanos},{required_ns}")?;
     }
     out.flush()
+}
+
+/// `-` without a limit or a measurement.
+fn cell(value: Option<impl std::fmt::Display>) -> String {
+    value.map_or_else(|| "-".to_owned(), |value| value.to_string())
 }
 
 fn print(check: &TimingCheck, unit: TimeUnit) -> io::Result<()> {
     let mut out = terminal::out();
     writeln!(out, "rule         required_ns     least_ns     spare_ns        at_cycle  channel  violations")?;
     for result in check.results() {
-        let (required, least, spare, at, channel) = columns(result, unit);
         let (name, total) = (result.rule.name(), result.total());
-        writeln!(out, "{name:12} {required:>11} {least:>12} {spare:>12} {at:>15} {channel:>8} {total:>11}")?;
+        let (limit, least) = ((result.nanos > 0).then_some(result.nanos), result.shortest);
+        let required = cell(limit);
+        let measured = cell(least.map(|least| unit.slack(least.measured, 0)));
+        let spare = cell(limit.zip(least).map(|(limit, least)| unit.slack(least.measured, limit)));
+        let at = cell(least.map(|least| unit.cycle(least.at)));
+        let channel = cell(least.map(|least| least.channel));
+        writeln!(
+            out,
+            "{name:12} {required:>11} {measured:>12} {spare:>12} {at:>15} {channel:>8} {total:>11}"
+        )?;
     }
     writeln!(out, "violations {}", check.total())?;
     for found in check.violations().iter().take(MAX_SHOWN) {
@@ -260,27 +276,11 @@ fn print(check: &TimingCheck, unit: TimeUnit) -> io::Result<()> {
     }
 }
 
-/// `-` without a limit or a measurement.
-fn columns(result: &RuleResult, unit: TimeUnit) -> (String, String, String, String, String) {
-    let none = || "-".to_owned();
-    let is_limited = result.nanos > 0;
-    let required = if is_limited { result.nanos.to_string() } else { none() };
-    let Some(least) = result.shortest else { return (required, none(), none(), none(), none()) };
-    let spare = unit.over(least.measured, result.nanos);
-    (
-        required,
-        unit.over(least.measured, 0).to_string(),
-        if is_limited { spare.to_string() } else { none() },
-        unit.cycle(least.at).to_string(),
-        least.channel.to_string(),
-    )
-}
-
-/// A time in ns with three decimal places. Times are whole picoseconds, rounded down, so that sums agree and negative
-/// slack stays negative.
+/// A time, printed in ns with up to three decimal places. Times are rounded down to whole picoseconds, so that sums
+/// agree and negative slack stays negative.
 struct Picoseconds(i128);
 
-/// A cycle, or a tick of a recording that no clock fits.
+/// The unit of measured times: a cycle, or a tick of a recording if no clock has whole cycles.
 #[derive(Clone, Copy)]
 pub(crate) struct TimeUnit {
     base: Timebase,
@@ -296,7 +296,8 @@ impl TimeUnit {
         Self { base, clock_hz }
     }
 
-    fn over(self, measured: Cycles, nanos: u32) -> Picoseconds {
+    /// `measured` minus `nanos`, a limit in ns.
+    fn slack(self, measured: Cycles, nanos: u32) -> Picoseconds {
         let (numerator, denominator) = self.base.parts();
         let scale = u128::from(numerator).saturating_mul(1_000_000_000_000);
         let whole = u128::from(measured.0).saturating_mul(scale) / u128::from(denominator);

@@ -37,7 +37,7 @@ pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.plant {
         scenario.plant.get_or_insert_default();
     }
-    arguments.named.put_into(&mut scenario);
+    arguments.named.apply_to(&mut scenario);
     let mut demands = match &scenario.source {
         Source::Motion(Motion { axes, .. }) => planned(arguments, axes)?,
         _ => unplanned::demands(arguments, &scenario)?,

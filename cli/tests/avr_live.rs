@@ -59,7 +59,7 @@ impl Board {
         // simavr prints, too.
         while !port.starts_with("pty:") {
             port.clear();
-            assert!(out.read_line(&mut port).expect("text") > 0, "it says where its port is");
+            assert!(out.read_line(&mut port).expect("text") > 0, "the port is printed");
         }
         Self { child, out, port: port.trim().to_owned(), folder }
     }
@@ -67,9 +67,9 @@ impl Board {
     /// Call after the port is closed.
     fn recording(mut self) -> PathBuf {
         let code = self.child.wait().expect("it is our own").code();
-        let mut said = String::new();
-        self.out.read_to_string(&mut said).expect("text");
-        assert_eq!(code, Some(0), "{said}");
+        let mut output = String::new();
+        self.out.read_to_string(&mut output).expect("text");
+        assert_eq!(code, Some(0), "{output}");
         self.folder.join("tick_controller.vcd")
     }
 }
@@ -127,7 +127,7 @@ fn sent(name: &str, scenario: &Path) -> PathBuf {
 
 #[test]
 #[ignore = "builds for an AVR and runs simavr: cargo xtask test --only avr"]
-fn the_firmware_does_what_is_sent_and_its_pins_are_the_models() {
+fn the_firmware_executes_all_ticks_and_its_pins_match_the_model() {
     let scenario = scenario();
     let recording = sent("done", &scenario);
     for (channel, steps) in [("0", 2400), ("1", 1000)] {
@@ -135,8 +135,8 @@ fn the_firmware_does_what_is_sent_and_its_pins_are_the_models() {
         let arguments = ["capture", text(&recording), "--against", text(&scenario), "--channel", channel];
         let (code, out, err) = run(&[&arguments[..], &["--within-us", &within, "--json"]].concat());
         assert_eq!(code, Some(0), "{out}{err}");
-        let told: Value = serde_json::from_str(&out).expect("JSON");
-        let row = &told["tables"]["comparison"][0];
+        let report: Value = serde_json::from_str(&out).expect("JSON");
+        let row = &report["tables"]["comparison"][0];
         let number = |column: &str| row[column].as_f64().unwrap_or_else(|| panic!("{column}: {row}"));
         assert_eq!(row["compares"], "steps", "{row}");
         let steps = Value::from(steps);
@@ -155,7 +155,7 @@ fn the_firmware_does_what_is_sent_and_its_pins_are_the_models() {
 
 #[test]
 #[ignore = "builds for an AVR and runs simavr: cargo xtask test --only avr"]
-fn ctrl_c_stops_the_firmware_and_it_tells_where_its_pins_are() {
+fn ctrl_c_stops_the_firmware_and_reports_its_positions() {
     let board = Board::on("stopped");
     let arguments =
         ["send", text(&scenario()), "--port", &board.port, "--slack", "500", "--json"].map(str::to_owned);
@@ -167,14 +167,14 @@ fn ctrl_c_stops_the_firmware_and_it_tells_where_its_pins_are() {
     let report: Value = serde_json::from_str(&out).expect("JSON");
     let row = &report["tables"]["controllers"][0];
     assert_eq!((&row["state"], &row["stop_acknowledged"]), (&"STOPPED".into(), &true.into()), "{out}");
-    let told: Vec<_> =
+    let reported: Vec<_> =
         (0..2).map(|channel| report["tables"]["positions"][channel]["told"].as_i64()).collect();
     let recording = board.recording();
     let (_, out, _) = run(&["capture", text(&recording), "--json"]);
     let recorded: Value = serde_json::from_str(&out).expect("JSON");
     let steps: Vec<_> =
         (0..2).map(|channel| recorded["tables"]["steps"][channel]["position"].as_i64()).collect();
-    assert_eq!(steps, told, "{out}");
+    assert_eq!(steps, reported, "{out}");
     // At the end the windings have no current.
     let edges = recording.with_file_name("edges.csv");
     let (code, out, err) = run(&["capture", text(&recording), "--csv", text(&edges)]);
@@ -188,7 +188,7 @@ fn ctrl_c_stops_the_firmware_and_it_tells_where_its_pins_are() {
 
 #[test]
 #[ignore = "builds for an AVR and runs simavr: cargo xtask test --only avr"]
-fn a_host_of_other_peoples_parts_finds_nothing_to_complain_of() {
+fn the_firmware_passes_the_checks_of_an_independent_host() {
     let python = env::var_os("STEPSCOPE_PYTHON").expect("`cargo xtask test --only avr` says where Python is");
     let judge = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/judges/host.py");
     let board = Board::on("judged");

@@ -100,7 +100,7 @@ fn bless(made: &Path, recording: &Path) {
 
 #[test]
 #[ignore = "builds for an AVR and runs simavr: cargo xtask test --only avr"]
-fn the_step_tables_recording_is_what_its_program_does() {
+fn the_step_table_recording_matches_its_program() {
     let (folder, scenario) = (folder("step_table"), recording("step-table.json"));
     let export = "--form exact --entries ticks --format avr --name axis_0 --out plan.h";
     let options = export.split_whitespace().map(OsStr::new);
@@ -143,12 +143,12 @@ fn packets_of(scenario: &str) -> String {
 
 #[test]
 #[ignore = "builds for an AVR and runs simavr: cargo xtask test --only avr"]
-fn the_late_packets_recording_is_what_its_program_does() {
+fn the_late_packet_recording_matches_its_program() {
     let (folder, scenario) = (folder("packet_host"), recording("late-packet.json"));
     let script = "--line sent.json".split_whitespace().map(OsStr::new);
     let line: Vec<&OsStr> = [OsStr::new("run"), scenario.as_os_str()].into_iter().chain(script).collect();
     call(&folder, "stepscope", &line);
-    let sent = fs::read_to_string(folder.join("sent.json")).expect("what is sent");
+    let sent = fs::read_to_string(folder.join("sent.json")).expect("the sent bytes");
     fs::write(folder.join("packets.h"), packets_of(&sent)).expect("a file");
     let dump = simulated(&folder, "packet_host");
     let sigrok = |arguments: [&OsStr; 6]| call(&folder, "sigrok-cli", &arguments);
@@ -157,10 +157,10 @@ fn the_late_packets_recording_is_what_its_program_does() {
     call(&folder, "sigrok-cli", &[input, OsStr::new(SAMPLED), i, dump.as_os_str(), o, session.as_os_str()]);
     let recording = recording("late-packet.sr");
     bless(&session, &recording);
-    let told = |session: &Path, name: &str| {
-        let told = folder.join(name);
-        sigrok([i, session.as_os_str(), output, OsStr::new("vcd"), o, told.as_os_str()]);
-        edges(&told)
+    let edges_of = |session: &Path, name: &str| {
+        let dump = folder.join(name);
+        sigrok([i, session.as_os_str(), output, OsStr::new("vcd"), o, dump.as_os_str()]);
+        edges(&dump)
     };
-    compare(&told(&session, "made.vcd"), &told(&recording, "recorded.vcd"), &folder);
+    compare(&edges_of(&session, "made.vcd"), &edges_of(&recording, "recorded.vcd"), &folder);
 }

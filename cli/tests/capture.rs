@@ -23,9 +23,9 @@ fn text(path: &Path) -> String {
     path.display().to_string()
 }
 
-fn file(folder: &Path, name: &str, held: impl AsRef<[u8]>) -> String {
+fn file(folder: &Path, name: &str, content: impl AsRef<[u8]>) -> String {
     let path = folder.join(name);
-    fs::write(&path, held).expect("a file");
+    fs::write(&path, content).expect("a file");
     text(&path)
 }
 
@@ -59,7 +59,7 @@ fn us(row: &Value, column: &str) -> f64 {
 }
 
 #[test]
-fn a_dump_of_ones_own_run_is_the_models() {
+fn a_dump_of_a_run_matches_its_plan() {
     let folder = folder("same");
     let (motion, dump) = (file(&folder, "motion.json", MOTION), text(&folder.join("own.vcd")));
     run(&motion, &["--vcd", &dump]);
@@ -84,7 +84,7 @@ fn of_trace(line: &str) -> (u64, &str) {
 }
 
 #[test]
-fn a_step_that_comes_late_is_found_by_its_number() {
+fn names_the_first_late_step() {
     let folder = folder("late");
     let (motion, trace) = (file(&folder, "motion.json", MOTION), text(&folder.join("own.trace")));
     run(&motion, &["--trace", &trace]);
@@ -130,7 +130,7 @@ fn a_step_that_comes_late_is_found_by_its_number() {
 }
 
 #[test]
-fn a_scenario_of_steps_has_each_in_its_cycle() {
+fn writes_a_scenario_with_exact_steps() {
     let folder = folder("steps");
     let (motion, dump) = (file(&folder, "motion.json", MOTION), text(&folder.join("own.vcd")));
     let (made, again) = (text(&folder.join("made.json")), text(&folder.join("again.vcd")));
@@ -159,7 +159,7 @@ fn a_scenario_of_steps_has_each_in_its_cycle() {
 }
 
 #[test]
-fn framed_bytes_of_a_recording_make_the_very_run_again() {
+fn writes_a_scenario_that_reproduces_a_framed_run() {
     let folder = folder("framed");
     let (framed, dump) = (file(&folder, "framed.json", FRAMED), text(&folder.join("own.vcd")));
     let (made, based) = (text(&folder.join("made.json")), text(&folder.join("based.json")));
@@ -176,11 +176,11 @@ fn framed_bytes_of_a_recording_make_the_very_run_again() {
 }
 
 /// Expects this message and exit code for an incomplete command line.
-fn asks(rows: &[(&str, &[&str], i32, &str)]) {
-    for (input, options, code, told) in rows {
+fn check_messages(rows: &[(&str, &[&str], i32, &str)]) {
+    for (input, options, code, expected) in rows {
         let (found, out, err) = stepscope(&[&["capture", "-"], *options].concat(), input);
         assert_eq!(found, Some(*code), "{options:?}: {out}{err}");
-        assert!(err.contains(told), "{options:?}: {err}");
+        assert!(err.contains(expected), "{options:?}: {err}");
     }
 }
 
@@ -191,9 +191,9 @@ $scope module b $end $var wire 1 % D $end $upscope $end $enddefinitions $end
 #0 0! 0# 0% #10 1! #12 0! #20 1! #22 0!";
 
 #[test]
-fn what_a_file_does_not_tell_is_asked_for() {
+fn names_the_option_for_missing_information() {
     let rate = "the file has no sample rate; give the sample rate in Hz";
-    asks(&[
+    check_messages(&[
         (LEVELS, &[], 2, rate),
         (LEVELS, &["--sample-rate", "1000"], 0, ""),
         (
@@ -222,7 +222,7 @@ fn what_a_file_does_not_tell_is_asked_for() {
 }
 
 #[test]
-fn the_rate_of_bytes_with_times_is_taken_by_them_and_said() {
+fn assumes_a_bit_rate_from_byte_times_and_reports_it() {
     for (bytes, baud) in [
         // At least 96 us per byte; two bytes per line every 2 ms; ten bytes per line every ms.
         ("0.001: 81\n0.001096: 05\n0.003: 81\n", "104167"),
@@ -231,16 +231,16 @@ fn the_rate_of_bytes_with_times_is_taken_by_them_and_said() {
     ] {
         let (code, out, err) = stepscope(&["capture", "-"], bytes);
         assert_eq!((code, err.as_str()), (Some(0), ""));
-        let told = format!("{baud} baud is assumed from the times of its bytes; set the right rate\n");
-        assert!(out.contains(&told) && out.contains(&format!("\nRX: {baud} baud, ")), "{out}");
+        let expected = format!("{baud} baud is assumed from the times of its bytes; set the right rate\n");
+        assert!(out.contains(&expected) && out.contains(&format!("\nRX: {baud} baud, ")), "{out}");
         let (_, out, _) = stepscope(&["capture", "-", "--baud", "250000"], bytes);
         assert!(!out.contains("note") && out.contains("\nRX: 250000 baud, "), "{out}");
     }
 }
 
 #[test]
-fn a_map_that_cannot_be_is_told() {
-    asks(&[
+fn explains_invalid_maps() {
+    check_messages(&[
         (DUMP, &["--map", "STEP0=STEP,DIR0=#1"], 0, ""),
         (DUMP, &["--map", "step0=!a.STEP"], 0, ""),
         (DUMP, &["--map", "STEP0"], 2, "the channel map: \"STEP0\" is not a pair; write SIGNAL=CHANNEL"),
@@ -259,7 +259,7 @@ fn a_map_that_cannot_be_is_told() {
 }
 
 #[test]
-fn a_file_that_is_cut_off_gives_what_could_be_read_and_one_that_is_none_nothing() {
+fn reports_the_readable_part_of_a_truncated_file() {
     let (code, out, err) = stepscope(&["capture", "-"], &format!("{DUMP} #30 1! #32 0"));
     assert_eq!(code, Some(1), "{err}");
     assert!(out.contains("channel 0  3 steps: 3 right"), "{out}");
@@ -282,7 +282,7 @@ fn a_file_that_is_cut_off_gives_what_could_be_read_and_one_that_is_none_nothing(
 }
 
 #[test]
-fn files_of_a_recording_are_read_again() {
+fn reads_its_own_output_files() {
     let folder = folder("files");
     let dump = file(&folder, "own.vcd", DUMP);
     let outputs = ["own.trace", "again.vcd", "own.csv", "bytes.csv"].map(|name| text(&folder.join(name)));
@@ -301,7 +301,7 @@ fn files_of_a_recording_are_read_again() {
 }
 
 #[test]
-fn the_packets_of_a_recording_are_those_of_the_run_with_the_devices_replies() {
+fn decodes_the_packets_and_replies_of_a_run() {
     let folder = folder("packets");
     let (dump, logged) = (text(&folder.join("own.vcd")), text(&folder.join("logged.csv")));
     let scenario = file(&folder, "framed.json", FRAMED);
@@ -333,7 +333,7 @@ fn the_packets_of_a_recording_are_those_of_the_run_with_the_devices_replies() {
 }
 
 #[test]
-fn pulses_are_held_against_a_driver() {
+fn checks_pulses_against_a_driver() {
     // A DRV8825 needs 1.9 us per level; the pulse at 40 us has 1 us.
     let short = DUMP.replace("#20 1!", "#20 1! #21 0!");
     let (code, out, err) = stepscope(&["capture", "-", "--driver", "drv8825", "--strict"], &short);
@@ -352,7 +352,7 @@ fn dump_of(timescale: &str, interval: u64, width: u64) -> String {
 }
 
 #[test]
-fn a_time_scale_that_is_no_whole_frequency_is_exact() {
+fn handles_timescales_without_a_whole_frequency_exactly() {
     for (timescale, interval, width, clock_hz, interval_s, high_ns, violations) in [
         ("83 ns", 120, 12, 1_000_000_000_u64, 9.96e-6, 996.0, 20),
         ("41667 ps", 240, 5, 1_000_000_000, 10.00008e-6, 208.3, 20),
@@ -388,7 +388,7 @@ fn a_time_scale_that_is_no_whole_frequency_is_exact() {
 }
 
 #[test]
-fn limits_are_compared_in_the_files_own_ticks() {
+fn compares_limits_in_the_ticks_of_the_file() {
     let limit = "custom:step_high_ns=1000,step_low_ns=9000";
     // 100 ps has no whole clock up to 1 GHz: 999.9 ns would become 1000 cycles.
     for (interval, width, rule, least_ns) in [
@@ -415,7 +415,7 @@ fn limits_are_compared_in_the_files_own_ticks() {
 }
 
 #[test]
-fn the_noise_of_floats_makes_no_violation() {
+fn rounding_noise_of_floats_causes_no_violation() {
     let mut table = "time_s,STEP\n".to_owned();
     for k in 1..500_u32 {
         let rise = f64::from(k) * 5e-6;
@@ -427,7 +427,7 @@ fn the_noise_of_floats_makes_no_violation() {
 }
 
 #[test]
-fn rounding_to_a_slower_clock_is_counted_and_makes_no_violation() {
+fn reports_rounding_to_a_slower_clock_without_violations() {
     // 1900 ns, as a DRV8825 needs, are 30.4 cycles of 16 MHz: some pulses become 30 cycles.
     let dump = dump_of("100 ns", 1003, 19);
     let line = ["capture", "-", "--driver", "drv8825", "--strict", "--clock", "16000000"];
@@ -451,7 +451,7 @@ fn a_strict_check_needs_steps() {
 }
 
 #[test]
-fn as_json_it_has_the_tables_of_the_document() {
+fn json_has_the_documented_tables() {
     let (code, out, err) = stepscope(&["capture", "-", "--json"], DUMP);
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let all: Value = serde_json::from_str(&out).expect("JSON");
@@ -480,7 +480,7 @@ fn as_json_it_has_the_tables_of_the_document() {
 
 /// The numbers of core/capture/recordings/README.md.
 #[test]
-fn the_step_tables_recording_has_the_jitter_of_its_readme() {
+fn the_step_table_recording_has_the_jitter_of_its_readme() {
     let (dump, plan) = (recording("step-table.vcd"), recording("step-table.json"));
     let line = ["capture", &dump, "--clock", "16000000", "--against", &plan];
     let found = row(&line, "comparison");
@@ -492,14 +492,14 @@ fn the_step_tables_recording_has_the_jitter_of_its_readme() {
     assert_eq!((cycles("mean_s") * 10.0).round(), 39.0);
     assert!(found["drift_ppm"].as_f64().is_some_and(|drift| drift.abs() < 0.1), "{found:#}");
     // 42 steps were due while interrupts were disabled: at least 18 cycles late.
-    let kept_out = row(&[&line[..], &["--within-us", "1"]].concat(), "comparison");
-    assert_eq!(kept_out["differing"], 42);
+    let late_steps = row(&[&line[..], &["--within-us", "1"]].concat(), "comparison");
+    assert_eq!(late_steps["differing"], 42);
     // The first step is 505 cycles later than in the scenario's run.
     assert_eq!(cycles("offset_s").round(), 505.0);
 }
 
 #[test]
-fn the_late_packets_recording_has_the_gap_of_its_readme() {
+fn the_late_packet_recording_has_the_gap_of_its_readme() {
     let folder = folder("packet");
     let (session, plan) = (recording("late-packet.sr"), recording("late-packet.json"));
     let line = ["capture", &session, "--against", &plan];
@@ -543,14 +543,14 @@ fn the_late_packets_recording_has_the_gap_of_its_readme() {
 }
 
 #[test]
-fn the_steps_of_a_recording_are_held_against_a_motor_where_one_is_known() {
-    let told = |options: &[&str]| {
+fn checks_recorded_steps_against_a_known_motor() {
+    let report = |options: &[&str]| {
         let (_, out, err) = stepscope(&[&["capture", "recorded-step-table"], options].concat(), "");
         assert!(!err.contains("error"), "{err}");
         out
     };
-    assert!(!told(&[]).contains("torque"));
-    let named = told(&["--motor", "nema-8"]);
+    assert!(!report(&[]).contains("torque"));
+    let named = report(&["--motor", "nema-8"]);
     assert!(
         named.contains("\ntorque\nchannel 0: the scenario has no motion") && named.contains("enough torque"),
         "{named}"
@@ -558,11 +558,11 @@ fn the_steps_of_a_recording_are_held_against_a_motor_where_one_is_known() {
     // The scenario has a motor with its own microsteps.
     let model = r#"{"source":{"motion":{"axes":[{"motor":{"load_torque_mn_m":1000},"mechanics":{"rotary":{"microsteps":1}}}]}}}"#;
     let model = file(&folder("torque"), "model.json", model);
-    let beside = told(&["--against", &model, "--json"]);
-    let beside: Value = serde_json::from_str(&beside).expect("JSON");
-    let row = &beside["tables"]["torque"][0];
+    let compared = report(&["--against", &model, "--json"]);
+    let compared: Value = serde_json::from_str(&compared).expect("JSON");
+    let row = &compared["tables"]["torque"][0];
     assert!(row["axis"] == 0 && row["enough"] == false && row["load_mn_m"] == 1000.0, "{row}");
-    assert_eq!(beside["tables"]["shortages"][0]["axis"], 0);
+    assert_eq!(compared["tables"]["shortages"][0]["axis"], 0);
 }
 
 /// A recording of the default motion in which `edit` replaces each step (index, cycle of 16 MHz) by any number of
@@ -589,7 +589,7 @@ fn edited(folder: &Path, name: &str, edit: impl Fn(usize, u64) -> Vec<(u64, bool
 }
 
 #[test]
-fn missing_extra_and_turned_steps_are_named() {
+fn lists_missing_extra_and_reversed_steps() {
     let folder = folder("events");
     let (plan, lacks) =
         edited(&folder, "lacks.vcd", |k, at| if k == 2000 { Vec::new() } else { vec![(at, true)] });
@@ -597,13 +597,13 @@ fn missing_extra_and_turned_steps_are_named() {
     let (code, out, err) = stepscope(&["capture", &lacks, "--against", &plan, "--late", &table], "");
     assert_eq!(code, Some(3), "{out}{err}");
     assert_eq!(err, "the recording differs from the plan: 1 step missing after step 1999, at 225.6 ms\n");
-    for told in [
+    for expected in [
         "compared with the plan: 3199 steps recorded, 3200 planned, 3199 in both, 1 missing, 0 extra\n",
         "  late: 0.000 us at most",
         "  drift 0.00 ppm; jitter 0.000 us at most",
         "\n  1 step missing after step 1999, at 225.6 ms\n",
     ] {
-        assert!(out.contains(told), "{told}: {out}");
+        assert!(out.contains(expected), "{expected}: {out}");
     }
     let late = fs::read_to_string(&table).expect("a table");
     assert_eq!(
@@ -638,7 +638,7 @@ fn missing_extra_and_turned_steps_are_named() {
 }
 
 #[test]
-fn exactly_the_allowed_time_is_no_difference() {
+fn a_delay_of_exactly_the_tolerance_is_no_difference() {
     let folder = folder("exactly");
     let (plan, late) =
         edited(&folder, "late.vcd", |k, at| vec![(at + if k == 2500 { 320 } else { 0 }, true)]);
@@ -657,7 +657,7 @@ fn exactly_the_allowed_time_is_no_difference() {
 }
 
 #[test]
-fn timing_limits_of_ones_own_need_no_scenario() {
+fn custom_timing_limits_need_no_scenario() {
     let folder = folder("limits");
     // A step generator changes DIR while STEP may follow too soon: twice 0.5 ms, once 10 ms before a step.
     let dump = file(

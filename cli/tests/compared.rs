@@ -36,7 +36,7 @@ fn events(name: &str, edit: impl Fn(usize, u64) -> Vec<(u64, bool)>) -> Vec<Stri
 }
 
 #[test]
-fn steps_missing_at_either_end_of_a_gentle_ramp_are_not_late_ones() {
+fn steps_missing_at_either_end_of_a_ramp_are_not_late() {
     let right = |at| vec![(at, true)];
     let without = |from: usize, to: usize| {
         events(
@@ -64,7 +64,7 @@ fn steps_missing_at_either_end_of_a_gentle_ramp_are_not_late_ones() {
 }
 
 #[test]
-fn edits_near_each_other_are_rows_of_their_own() {
+fn lists_nearby_differences_separately() {
     for apart in [3, 6, 12] {
         let found = events(&format!("apart-{apart}"), |k, at| match k {
             0 => Vec::new(),

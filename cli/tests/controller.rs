@@ -5,7 +5,7 @@ use serde_json::Value;
 use vcd::{Command, Parser};
 
 #[test]
-fn the_status_tells_state_position_trust_and_wear() {
+fn status_has_state_position_trust_and_wear() {
     let (code, out, err) = stepscope(&["run", "zhang-2012-controller"], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let line = "panel 0 READY trust HELD position 17233 axis_error 0 records 5 most_writes 1 presses_without_meaning 0";
@@ -21,7 +21,7 @@ fn the_status_tells_state_position_trust_and_wear() {
 }
 
 #[test]
-fn a_panels_records_are_written_as_a_table() {
+fn writes_panel_records_as_a_table() {
     let (code, out, _) = stepscope(&["run", "zhang-2012-zero-by-jog", "--panel", "-"], "");
     assert_eq!(code, Some(0));
     let rows: Vec<&str> = out.lines().collect();
@@ -61,7 +61,7 @@ fn tables_and_dumps_have_states_and_inputs() {
 }
 
 #[test]
-fn power_cuts_are_counted_and_the_hold_up_that_is_just_enough_is_found() {
+fn counts_power_cuts_and_finds_the_minimum_hold_up() {
     let short = r#"{"clock_hz":100000,"bus":{"pulse_width_cycles":2},"source":{"standalone":[{"self_test_cycles":10,
         "debounce_cycles":0,"max_speed_hz":1000,"groups":[{"move":{"length":2,"speed_hz":1000}}],
         "memory":{"byte_write_cycles":10},"inputs":[{"cycle":400,"input":"start"}]}]}}"#;
@@ -89,7 +89,7 @@ fn power_cuts_are_counted_and_the_hold_up_that_is_just_enough_is_found() {
 }
 
 #[test]
-fn a_program_without_end_is_refused_with_the_groups_that_repeat() {
+fn rejects_an_endless_program_and_names_its_groups() {
     let scenario = r#"{"source":{"standalone":[{"debounce_cycles":0,"memory":{"byte_write_cycles":1},
         "groups":[{"set":{}},{"set":{"level":0}},{"jump":{}}],"inputs":[{"cycle":3000,"input":"start"}]}]}}"#;
     let (code, _, err) = stepscope(&["run", "-"], scenario);
@@ -99,7 +99,7 @@ fn a_program_without_end_is_refused_with_the_groups_that_repeat() {
 }
 
 #[test]
-fn a_press_that_means_nothing_is_told_with_its_cycle_and_the_state() {
+fn reports_presses_without_effect_with_cycle_and_state() {
     let scenario = r#"{"source":{"standalone":[{"debounce_cycles":0,"memory":{"byte_write_cycles":1},
         "inputs":[{"cycle":3000,"input":"pause"},{"cycle":4000,"input":"key_7"}]}]}}"#;
     let (code, out, _) = stepscope(&["run", "-"], scenario);

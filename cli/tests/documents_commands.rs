@@ -114,9 +114,9 @@ fn check(name: &str, page: &str, root: &Path) -> Vec<String> {
         .output()
         .expect("bash");
     if !ran.status.success() {
-        let said = String::from_utf8_lossy(&ran.stderr);
+        let errors = String::from_utf8_lossy(&ran.stderr);
         let code = ran.status.code();
-        problems.push(format!("{name}: ends with {code:?}; the last line names the block\n{said}"));
+        problems.push(format!("{name}: ends with {code:?}; the last line names the block\n{errors}"));
         return problems;
     }
     for pair in blocks.windows(2).filter(|pair| pair[1].note == "output") {

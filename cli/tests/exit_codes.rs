@@ -75,7 +75,7 @@ fn read(reader: &(&[&str], &[&str]), file: &str) -> (Option<i32>, String) {
 }
 
 #[test]
-fn a_file_that_cannot_be_read_ends_every_command_with_1() {
+fn an_unreadable_file_ends_every_command_with_1() {
     let folder = folder("unreadable");
     let (missing, directory) = (folder.join("missing"), folder.clone());
     for reader in READERS {
@@ -89,11 +89,11 @@ fn a_file_that_cannot_be_read_ends_every_command_with_1() {
 }
 
 #[test]
-fn a_file_of_something_else_ends_every_command_with_2() {
+fn an_invalid_file_ends_every_command_with_2() {
     let folder = folder("else");
-    for (name, held) in [("zero", r#"{"clock_hz":0}"#.as_bytes()), ("binary", &[0xff, 0x00, 0xfe, 0x80])] {
+    for (name, content) in [("zero", r#"{"clock_hz":0}"#.as_bytes()), ("binary", &[0xff, 0x00, 0xfe, 0x80])] {
         let path = folder.join(name);
-        fs::write(&path, held).expect("a file");
+        fs::write(&path, content).expect("a file");
         let path = path.display().to_string();
         for reader in READERS {
             let (code, err) = read(reader, &path);
@@ -104,7 +104,7 @@ fn a_file_of_something_else_ends_every_command_with_2() {
 }
 
 #[test]
-fn seeds_that_are_not_there_are_refused() {
+fn rejects_seeds_out_of_range() {
     for (options, expected) in [
         (&["--seeds", "0"] as &[&str], "'0' for '--seeds <N>': out of range; use 1 to 4294967295"),
         (
@@ -123,7 +123,7 @@ fn seeds_that_are_not_there_are_refused() {
 }
 
 #[test]
-fn numbers_that_are_none_are_refused_by_every_option() {
+fn invalid_numbers_end_every_command_with_2() {
     let options: &[&[&str]] = &[
         &["capture", "recorded-step-table", "--against", "{}", "--within-us"],
         &["capture", "recorded-step-table", "--scenario", "-", "--error-us"],
@@ -167,36 +167,36 @@ fn numbers_that_are_none_are_refused_by_every_option() {
 
 /// The message has the value given and what is allowed.
 #[test]
-fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
+fn rejects_reversed_ranges_and_indexes_out_of_range() {
     let sweep = "--to: 0.002 is below --from 0.06; use --to 0.06 to 1";
     let axis =
         "--axis: 18446744073709551615 is out of range; the scenario has axes 0 to 1; use --axis 0 to 1";
     let controller = "--controller: 18446744073709551615 is out of range; the scenario has only controller 0; use --controller 0";
     let channel = "--channel: 18446744073709551615 is out of range; the scenario has only channel 0; use --channel 0, or omit it for all";
-    const MOST: &str = "18446744073709551615";
+    const MAX_INDEX: &str = "18446744073709551615";
     let rows: &[(&[&str], &str)] = &[
         (&["sine", "sweep", "--from", "0.06", "--to", "0.002"], sweep),
         (&["sine", "best", "--from", "0.06", "--to", "0.002"], sweep),
         (&["sine", "best", "--segments", "0"], "'0' for '--segments <N>': out of range; use 1 or more"),
         (
-            &["sine", "best", "--segments", MOST],
+            &["sine", "best", "--segments", MAX_INDEX],
             "--segments: 18446744073709551615 is out of range for deviations from 0.002 to 0.06; use 2 to 10",
         ),
         (&["sine", "vertices", "--segments", "33"], "out of range; use 1 to 32"),
         (
-            &["sine", "segments", "sine-2022-d00054", "--axis", MOST],
+            &["sine", "segments", "sine-2022-d00054", "--axis", MAX_INDEX],
             "--axis: 18446744073709551615 is out of range; the scenario has only axis 0; use --axis 0, or omit it for all",
         ),
-        (&["tables", "framed-link", "--axis", MOST], axis),
-        (&["tables", "framed-link", "--axis", MOST, "--json"], axis),
-        (&["tables", "framed-link", "--axis", MOST, "--format", "c"], axis),
-        (&["measures", "framed-link", "--axis", MOST], axis),
-        (&["torque", "framed-link", "--axis", MOST], axis),
-        (&["run", "framed-link", "--controller", MOST], controller),
-        (&["plant", "resonance-full-steps", "--controller", MOST], controller),
-        (&["settling", "resonance-full-steps", "--channel", MOST], channel),
-        (&["limits", "resonance-full-steps", "--channel", MOST], channel),
-        (&["resonance", "resonance-full-steps", "--channel", MOST], channel),
+        (&["tables", "framed-link", "--axis", MAX_INDEX], axis),
+        (&["tables", "framed-link", "--axis", MAX_INDEX, "--json"], axis),
+        (&["tables", "framed-link", "--axis", MAX_INDEX, "--format", "c"], axis),
+        (&["measures", "framed-link", "--axis", MAX_INDEX], axis),
+        (&["torque", "framed-link", "--axis", MAX_INDEX], axis),
+        (&["run", "framed-link", "--controller", MAX_INDEX], controller),
+        (&["plant", "resonance-full-steps", "--controller", MAX_INDEX], controller),
+        (&["settling", "resonance-full-steps", "--channel", MAX_INDEX], channel),
+        (&["limits", "resonance-full-steps", "--channel", MAX_INDEX], channel),
+        (&["resonance", "resonance-full-steps", "--channel", MAX_INDEX], channel),
         (
             &["limits", "patent-2019-overload", "--channel", "4"],
             "--channel: 4 is out of range; the scenario has channels 0 to 3; use --channel 0 to 3, or omit it for all",
@@ -214,7 +214,7 @@ fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
             "'16' for '--channel <K>': out of range; use 0 to 15",
         ),
         (
-            &["capture", "recorded-step-table", "--against", "framed-link", "--align", MOST],
+            &["capture", "recorded-step-table", "--against", "framed-link", "--align", MAX_INDEX],
             "--align: 18446744073709551615 is out of range; the plan has ",
         ),
         (&["capture", "recorded-step-table", "--map", "STEP16=#0"], "use STEP0 to STEP15"),
@@ -237,7 +237,7 @@ fn ranges_that_fall_and_indexes_beyond_the_last_are_refused() {
 
 /// A run itself may have any length.
 #[test]
-fn an_analysis_of_four_thousand_million_steps_is_refused_with_numbers() {
+fn rejects_the_analysis_of_four_billion_steps() {
     let long = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"count":4294967295}}]}]}}}"#;
     for arguments in [
         &["tables", "-"] as &[&str],
@@ -255,7 +255,7 @@ fn an_analysis_of_four_thousand_million_steps_is_refused_with_numbers() {
 }
 
 #[test]
-fn more_threads_than_four_per_core_are_not_started() {
+fn starts_at_most_four_threads_per_core() {
     let (code, out, err) = stepscope(&["faults", "--seeds", "1", "--threads", "100000"], "");
     assert_eq!(code, Some(0));
     assert!(err.starts_with("--threads: 100000 is more than 4 per core; "), "{err}");
@@ -284,7 +284,7 @@ fn a_closed_standard_output_ends_every_command_silently_with_141() {
 }
 
 #[test]
-fn open_checks_the_scenario_as_a_run_does() {
+fn open_validates_the_scenario_like_run() {
     // A motion with too many ticks for a run.
     let scenario = r#"{"source":{"motion":{"axes":[{"moves":[{"dwell":{"duration_s":86400}},{"dwell":{"duration_s":86400}},{"constant":{}}]}]}}}"#;
     let (code, _, err) = stepscope(&["run", "-"], scenario);
@@ -299,7 +299,7 @@ fn open_checks_the_scenario_as_a_run_does() {
 /// A command that waits for a pipe nobody writes to has not begun to write.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_request_to_end_ends_a_command_with_130_before_it_writes() {
+fn a_signal_ends_a_waiting_command_with_130() {
     use std::{os::unix::fs::OpenOptionsExt as _, thread, time::Duration};
     let folder = folder("signals");
     let pipe = folder.join("pipe");
@@ -343,7 +343,7 @@ fn a_request_to_end_ends_a_command_with_130_before_it_writes() {
 /// A shell lets background commands ignore Ctrl-C, but not a request to end.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_command_in_the_background_ends_with_130_by_a_request() {
+fn a_signal_ends_a_background_command_with_130() {
     let folder = folder("background");
     let script = format!(
         "cd '{}' && mkfifo pipe && {{ '{}' run pipe & }}; p=$!; \
@@ -358,16 +358,16 @@ fn a_command_in_the_background_ends_with_130_by_a_request() {
 
 #[cfg(unix)]
 #[test]
-fn a_pipe_is_read_like_a_file() {
+fn reads_a_pipe_like_a_file() {
     let scenario = r#"{"title":"through a pipe"}"#;
     let expected = stepscope(&["run", "-", "--digest"], scenario).1;
     let trace = stepscope(&["run", "-", "--vcd", "-"], scenario).1;
     let folder = folder("pipes");
     fs::write(folder.join("in.json"), scenario).expect("a file");
     fs::write(folder.join("edges.vcd"), trace).expect("a file");
-    let through = |held: &str, command: &str| {
+    let through = |content: &str, command: &str| {
         let program = env!("CARGO_BIN_EXE_stepscope");
-        let script = format!("rm -f pipe; mkfifo pipe; cat {held} > pipe & '{program}' {command}; wait");
+        let script = format!("rm -f pipe; mkfifo pipe; cat {content} > pipe & '{program}' {command}; wait");
         let output =
             Command::new("sh").args(["-c", &script]).current_dir(&folder).output().expect("sh starts");
         (output.status.code(), String::from_utf8(output.stdout).expect("text"))

@@ -18,7 +18,7 @@ fn row(table: &str, name: &str) -> Vec<u64> {
 }
 
 #[test]
-fn framed_has_no_wrong_steps_raw_has_and_the_threads_do_not_matter() {
+fn only_raw_lines_have_wrong_steps_with_any_number_of_threads() {
     let call = |threads| stepscope(&["faults", "--seeds", "300", "--threads", threads]);
     let (code, table, err) = call("1");
     assert_eq!((code, err.as_str()), (Some(0), ""));
@@ -34,7 +34,7 @@ fn framed_has_no_wrong_steps_raw_has_and_the_threads_do_not_matter() {
 }
 
 #[test]
-fn seeds_add_up_from_wherever_they_begin() {
+fn results_of_seed_ranges_add_up() {
     let frames = |options: &[&str]| {
         let all = [&["faults", "--protocol", "framed"], options].concat();
         row(&stepscope(&all).1, "frames or packets sent")[0]
@@ -65,7 +65,7 @@ fn a_seed_can_be_run_as_a_scenario_and_opened_as_a_link() {
 }
 
 #[test]
-fn a_file_gives_the_orders_and_its_problems_end_with_2() {
+fn uses_the_ticks_of_a_file_and_reports_its_problems() {
     let file = |name: &str, json: &str| {
         let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name).display().to_string();
         fs::write(&path, json).expect("a file");
@@ -74,18 +74,18 @@ fn a_file_gives_the_orders_and_its_problems_end_with_2() {
     let orders = r#"{ "source": { "packets": { "packets": [ "81", "02", "83", "04" ] } } }"#;
     let (code, table, _) = stepscope(&["faults", "--seeds", "20", &file("orders.json", orders)]);
     assert_eq!((code, row(&table, "ticks commanded")), (Some(0), vec![20 * 5, 20 * 4]));
-    for (name, json, says) in [
+    for (name, json, expected) in [
         ("typo.json", r#"{ "bus": { "slots": "many" } }"#, "bus.slots: "),
         ("script.json", r#"{ "source": { "line": {} } }"#, "source: the scenario has no ticks to disturb"),
     ] {
         let (code, out, err) = stepscope(&["faults", &file(name, json)]);
         assert_eq!((code, out.as_str()), (Some(2), ""));
-        assert!(err.contains(says), "{err}");
+        assert!(err.contains(expected), "{err}");
     }
 }
 
 #[test]
-fn the_progress_is_told_if_it_is_asked_for() {
+fn prints_progress_on_request() {
     let (code, _, err) = stepscope(&["faults", "--seeds", "200", "--protocol", "raw", "--progress"]);
     assert_eq!(code, Some(0));
     assert!(err.contains("faults: 100 %\n") && err.contains("faults: 200 seeds in "), "{err}");

@@ -86,7 +86,7 @@ impl Drop for Running {
     }
 }
 
-/// Each example of `send` talks to the example of `serve` at its place.
+/// The examples of `serve` and `send` connect to each other in pairs.
 #[cfg(unix)]
 #[test]
 fn the_examples_of_live_commands_run_with_each_other() {
@@ -97,9 +97,9 @@ fn the_examples_of_live_commands_run_with_each_other() {
         let server = shell(&format!("exec {serve} --lag 60000"), &folder).spawn().expect("sh starts");
         let mut server = Running(server);
         let mut out = BufReader::new(server.0.stdout.take().expect("piped"));
-        let mut place = String::new();
-        out.read_line(&mut place).expect("text");
-        if place.is_empty() {
+        let mut address = String::new();
+        out.read_line(&mut address).expect("text");
+        if address.is_empty() {
             // Another program has the port.
             let mut err = String::new();
             server.0.stderr.take().expect("piped").read_to_string(&mut err).expect("text");
@@ -121,7 +121,7 @@ fn the_examples_of_live_commands_run_with_each_other() {
 }
 
 #[test]
-fn a_name_that_is_nearly_right_is_suggested() {
+fn suggests_similar_names() {
     let rows: &[(&[&str], &str, &str)] = &[
         (&["calibrat"], "", "a similar subcommand exists: 'calibrate'"),
         (&["run", "-", "--trase", "x"], "{}", "a similar argument exists: '--trace'"),
@@ -145,7 +145,7 @@ fn a_name_that_is_nearly_right_is_suggested() {
 }
 
 #[test]
-fn what_goes_to_standard_output_goes_to_a_file_with_o() {
+fn writes_standard_output_to_a_file_with_o() {
     let folder = std::path::PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     let path = folder.join("written-with-o").display().to_string();
     let table = "0,0\n1,5\n";

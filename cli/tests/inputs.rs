@@ -14,7 +14,7 @@ fn file(name: &str) -> PathBuf {
 }
 
 #[test]
-fn input_without_an_end_is_read_no_further_than_is_allowed() {
+fn stops_reading_endless_input_at_the_limit() {
     let mut child = Command::new(env!("CARGO_BIN_EXE_stepscope"))
         .args(["run", "-"])
         .stdin(Stdio::piped())
@@ -38,7 +38,7 @@ fn input_without_an_end_is_read_no_further_than_is_allowed() {
 
 /// As `yes '{'` prints it, at maximum length: nested braces need no additional memory.
 #[test]
-fn a_text_of_braces_is_refused_as_what_it_is() {
+fn rejects_nested_braces_as_invalid_json() {
     let braces = "{\"bus\":".repeat(1 << 20);
     let (code, out, err) = stepscope(&["run", "-"], &braces);
     assert_eq!((code, out.as_str()), (Some(2), ""));
@@ -68,7 +68,7 @@ fn peak(arguments: &[&str]) -> u64 {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_million_segments_take_at_most_ten_times_their_text() {
+fn a_million_segments_need_at_most_ten_times_the_memory_of_their_text() {
     let path = file("million.json");
     let mut out = BufWriter::new(File::create(&path).expect("a file"));
     let begun = r#"{"run_cycles":1000,"source":{"segments":{"channels":[{"segments":["#;
@@ -88,7 +88,7 @@ fn a_million_segments_take_at_most_ten_times_their_text() {
 
 /// An entry takes more memory than its text, so the number of entries is limited.
 #[test]
-fn a_short_text_of_very_many_entries_is_refused() {
+fn rejects_too_many_entries() {
     let sends = vec!["{}"; 6_000_000].join(",");
     let (code, out, err) =
         stepscope(&["run", "-"], &format!(r#"{{"source":{{"line":{{"sends":[{sends}]}}}}}}"#));
@@ -97,7 +97,7 @@ fn a_short_text_of_very_many_entries_is_refused() {
 }
 
 #[test]
-fn a_field_that_is_given_twice_is_refused_with_its_path() {
+fn rejects_duplicate_fields_with_their_paths() {
     for (given, path) in [
         (r#"{"clock_hz":16000000,"clock_hz":8000000}"#, "clock_hz"),
         (r#"{"bus":{"slots":5,"channels":1,"slots":5}}"#, "bus.slots"),
@@ -117,7 +117,7 @@ fn a_field_that_is_given_twice_is_refused_with_its_path() {
 }
 
 #[test]
-fn a_whole_number_may_be_written_as_other_programs_write_it() {
+fn accepts_whole_numbers_with_decimals_or_exponents() {
     let plain = stepscope(&["run", "-", "--digest"], r#"{"clock_hz":16000000,"bus":{"slots":50}}"#);
     assert_eq!(plain.0, Some(0));
     for given in
@@ -128,8 +128,8 @@ fn a_whole_number_may_be_written_as_other_programs_write_it() {
 }
 
 #[test]
-fn a_value_of_the_wrong_type_is_told_the_documented_range() {
-    for (given, says) in [
+fn states_the_allowed_range_for_a_wrong_type() {
+    for (given, expected) in [
         (r#"{"clock_hz":-1}"#, "clock_hz: -1; use a whole number from 11 to 1000000000 Hz"),
         (r#"{"clock_hz":16000000.5}"#, "clock_hz: 16000000.5; use a whole number from 11 to 1000000000 Hz"),
         (r#"{"bus":{"slots":300}}"#, "bus.slots: 300; use a whole number from 1 to 127"),
@@ -146,12 +146,12 @@ fn a_value_of_the_wrong_type_is_told_the_documented_range() {
     ] {
         let (code, _, err) = stepscope(&["run", "-"], given);
         assert_eq!(code, Some(2), "{given}");
-        assert!(err.lines().nth(1).is_some_and(|line| line.trim().starts_with(says)), "{given}: {err}");
+        assert!(err.lines().nth(1).is_some_and(|line| line.trim().starts_with(expected)), "{given}: {err}");
     }
 }
 
 #[test]
-fn a_presets_name_stands_for_its_file_wherever_one_does() {
+fn accepts_preset_names_in_place_of_files() {
     let preset = PRESETS.iter().find(|preset| preset.id == "sonobe-2011-table").expect("it is there");
     for arguments in [
         &["run"] as &[&str],

@@ -71,19 +71,19 @@ fn each_controller_has_its_digest_status_and_files() {
 }
 
 #[test]
-fn a_controller_that_is_not_there_ends_with_2() {
+fn rejects_a_controller_out_of_range() {
     let (several, one) = (scenario("three.json", NOISY), scenario("one.json", "{}"));
-    for (path, given, says) in
+    for (path, given, expected) in
         [(&several, "3", "use --controller 0 to 2"), (&one, "1", "the scenario has only controller 0")]
     {
         let (code, out, err) = stepscope(&["run", path, "--controller", given]);
         assert_eq!((code, out.as_str()), (Some(2), ""));
-        assert!(err.contains(says), "{err}");
+        assert!(err.contains(expected), "{err}");
     }
 }
 
 #[test]
-fn a_host_that_gives_up_says_why_and_how_much_was_done() {
+fn reports_why_a_host_gave_up_and_its_progress() {
     let json = r#"{ "line": { "protocol": "framed", "receiver_baud": 100000 } }"#;
     let status = out(&["run", &scenario("deaf.json", json)]);
     assert!(status.contains("ticks_done 0\n") && status.contains("\nhost given up: no reply\n"), "{status}");
@@ -92,7 +92,7 @@ fn a_host_that_gives_up_says_why_and_how_much_was_done() {
 
 /// The exported line includes the noise and needs no host or motion.
 #[test]
-fn a_noisy_line_run_in_its_turn_gives_every_controller_the_same_trace() {
+fn a_run_of_an_exported_noisy_line_has_the_same_traces() {
     let raw = r#"{ "bus": { "channels": 2 }, "line": { "address": 3,
             "glitches": [ { "start_cycle": 90000, "length_cycles": 90000, "level": 1 } ],
             "noise": { "seed": 5, "flipped_bits_ppm": 5000, "lost_bytes_ppm": 20000,
@@ -117,7 +117,7 @@ fn a_noisy_line_run_in_its_turn_gives_every_controller_the_same_trace() {
 }
 
 #[test]
-fn the_table_of_packets_is_read_back_field_by_field() {
+fn the_packet_table_is_valid_csv() {
     let (scenario, table) = (scenario("table.json", NOISY), file("table.csv"));
     out(&["run", &scenario, "--packets", &table]);
     let mut reader = csv::Reader::from_path(&table).expect("a table");
@@ -136,7 +136,7 @@ fn the_table_of_packets_is_read_back_field_by_field() {
 
 /// A shared line has replies of other controllers; a table that is sent again omits them.
 #[test]
-fn the_table_of_a_shared_line_read_again_sends_what_the_host_sent() {
+fn rereads_only_the_packets_of_the_host() {
     let preset = stepscope_core::scenario::presets::PRESETS.iter();
     let preset = preset.into_iter().find(|preset| preset.id == "four-controllers-framed").expect("a preset");
     let path = scenario("shared.json", preset.json);
@@ -157,7 +157,7 @@ fn the_table_of_a_shared_line_read_again_sends_what_the_host_sent() {
 }
 
 #[test]
-fn a_run_says_how_far_it_is_if_it_is_asked() {
+fn a_run_prints_progress_on_request() {
     let scenario = scenario("progress.json", NOISY);
     let (code, out, err) = stepscope(&["run", &scenario, "--digest", "--progress"]);
     assert_eq!(code, Some(0));

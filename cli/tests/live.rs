@@ -45,7 +45,7 @@ struct Server {
     child: Child,
     out: BufReader<ChildStdout>,
     err: BufReader<ChildStderr>,
-    place: String,
+    address: String,
 }
 
 impl Server {
@@ -53,9 +53,9 @@ impl Server {
         let mut child = command(&[&["serve"], arguments].concat()).spawn().expect("it starts");
         let mut out = BufReader::new(child.stdout.take().expect("piped"));
         let err = BufReader::new(child.stderr.take().expect("piped"));
-        let mut place = String::new();
-        out.read_line(&mut place).expect("it says where it is");
-        Self { child, out, err, place: place.trim().to_owned() }
+        let mut address = String::new();
+        out.read_line(&mut address).expect("it prints its address");
+        Self { child, out, err, address: address.trim().to_owned() }
     }
 
     fn signal(&self, signal: Signal) {
@@ -101,50 +101,53 @@ fn run_digest(scenario: &Path) -> String {
 }
 
 #[test]
-fn what_is_sent_to_a_served_scenario_is_done_and_the_recording_is_the_session() {
+fn executes_all_ticks_and_records_the_session() {
     let scenario = file("done.json", FEW);
     let record = scenario.with_file_name("live-done-recording.json");
     let link = scenario.with_file_name("live-done-port");
-    for place in [&["--pty", text(&link)][..], &["--tcp", "127.0.0.1:0"]] {
+    for connection in [&["--pty", text(&link)][..], &["--tcp", "127.0.0.1:0"]] {
         for pace in ["1", "max"] {
             let more = ["--record", text(&record), "--once", "--pace", pace];
-            let mut server = Server::start(&[&[text(&scenario)], place, &more].concat());
-            let port =
-                if place[0] == "--pty" { format!("pty:{}", text(&link)) } else { server.place.clone() };
+            let mut server = Server::start(&[&[text(&scenario)], connection, &more].concat());
+            let port = if connection[0] == "--pty" {
+                format!("pty:{}", text(&link))
+            } else {
+                server.address.clone()
+            };
             // A pseudo-terminal shows no end to wait for.
             let (code, out, err) = send(&scenario, &port, &["--slack", "500"]);
-            assert_eq!((code, err.as_str()), (Some(0), ""), "{place:?} {pace}: {out}");
+            assert_eq!((code, err.as_str()), (Some(0), ""), "{connection:?} {pace}: {out}");
             assert!(out.contains("controller 0 address 0: done\n  ticks 4 of 4 done"), "{out}");
-            let told = "positions 6 -7: the sums of the ticks\n  state READY, new faults none";
-            assert!(out.contains(told), "{out}");
+            let confirmed = "positions 6 -7: the sums of the ticks\n  state READY, new faults none";
+            assert!(out.contains(confirmed), "{out}");
             let (code, out, err) = server.wait();
             // A loaded machine may be too slow, which is reported.
             assert!(code == Some(0) || code == Some(3) && err.contains("not in real time"), "{code:?} {err}");
             assert!(err.contains("recorded") && out.contains("positions 6 -7\n"), "{out}{err}");
             let digest = out.lines().find_map(|line| line.strip_prefix("digest ")).expect("a digest");
-            assert_eq!(run_digest(&record), digest, "{place:?} {pace}");
+            assert_eq!(run_digest(&record), digest, "{connection:?} {pace}");
             let shared = out.lines().find(|line| line.starts_with("#c=")).expect("a link");
             let (code, _, err) = ended(command(&["open", shared, "--verify"]).output().expect("it runs"));
             assert_eq!(code, Some(0), "{err}");
-            let beside = fs::read_to_string(record.with_file_name("live-done-recording.session.json"));
-            let beside: Value = serde_json::from_str(&beside.expect("it is there")).expect("it is JSON");
-            assert_eq!((&beside["digests"][0], &beside["pace"]), (&Value::from(digest), &Value::from(pace)));
-            assert!(beside["replies"].as_array().is_some_and(|replies| replies.len() >= 5));
-            assert!(!link.exists(), "the link goes with the session");
+            let times = fs::read_to_string(record.with_file_name("live-done-recording.session.json"));
+            let times: Value = serde_json::from_str(&times.expect("it is there")).expect("it is JSON");
+            assert_eq!((&times["digests"][0], &times["pace"]), (&Value::from(digest), &Value::from(pace)));
+            assert!(times["replies"].as_array().is_some_and(|replies| replies.len() >= 5));
+            assert!(!link.exists(), "the link is removed with the session");
         }
     }
 }
 
 #[test]
-fn raw_packets_are_sent_and_never_said_to_be_done() {
+fn raw_packets_are_sent_but_not_reported_as_done() {
     let scenario = file("raw.json", RAW);
     let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0"]);
-    let (code, out, err) = send(&scenario, &server.place, &["--lead", "3"]);
+    let (code, out, err) = send(&scenario, &server.address, &["--lead", "3"]);
     assert_eq!(code, Some(3), "{out}");
     assert!(err.contains("sent, not verified"), "{err}");
     assert!(out.contains("sent 4 of 4 packets; not verified") && !out.contains("done"), "{out}");
     thread::sleep(Duration::from_millis(100));
-    let (code, out, err) = send(&scenario, &server.place, &["--json"]);
+    let (code, out, err) = send(&scenario, &server.address, &["--json"]);
     let report: Value = serde_json::from_str(&out).unwrap_or_else(|_| panic!("{code:?} {out} {err}"));
     let row = &report["tables"]["send"][0];
     assert_eq!((&row["outcome"], &row["packets_sent"]), (&Value::from("not verified"), &Value::from(4)));
@@ -154,10 +157,10 @@ fn raw_packets_are_sent_and_never_said_to_be_done() {
 }
 
 #[test]
-fn ctrl_c_stops_the_motor_and_the_report_says_where() {
+fn ctrl_c_stops_the_motor_and_reports_its_position() {
     let scenario = file("stopped.json", LONG);
     let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--lag", "2000"]);
-    let arguments = ["send", text(&scenario), "--port", &server.place, "--json", "--slack", "1000"];
+    let arguments = ["send", text(&scenario), "--port", &server.address, "--json", "--slack", "1000"];
     let sender = command(&arguments).spawn().expect("it starts");
     // The motion is under way.
     thread::sleep(Duration::from_millis(1000));
@@ -171,26 +174,30 @@ fn ctrl_c_stops_the_motor_and_the_report_says_where() {
     assert_ne!(report["tables"]["send"][0]["outcome"], "done");
     let position = |column: &str| report["tables"]["positions"][0][column].as_i64().expect("a number");
     let bounds = position("steps_of_done_ticks")..=position("steps_with_the_next_tick");
-    let told = position("told");
-    assert!(bounds.contains(&told), "{out}");
+    let reported = position("told");
+    assert!(bounds.contains(&reported), "{out}");
     let (_, out, _) = server.end();
-    assert!(out.contains(&format!("positions {told}\n")) && out.contains("state STOPPED"), "{told} {out}");
+    assert!(
+        out.contains(&format!("positions {reported}\n")) && out.contains("state STOPPED"),
+        "{reported} {out}"
+    );
 }
 
 #[test]
-fn a_port_that_is_lost_ends_with_4_and_what_is_known() {
+fn a_lost_port_ends_with_4_and_reports_the_first_unconfirmed_tick() {
     let scenario = file("lost.json", LONG);
     let link = scenario.with_file_name("live-lost-port");
-    for place in [&["--pty", text(&link)][..], &["--tcp", "127.0.0.1:0"], &["--pty", text(&link)]] {
+    for connection in [&["--pty", text(&link)][..], &["--tcp", "127.0.0.1:0"], &["--pty", text(&link)]] {
         // A session replaces the link that an earlier one left behind.
-        let server = Server::start(&[&[text(&scenario)], place].concat());
-        let port = if place[0] == "--pty" { format!("pty:{}", text(&link)) } else { server.place.clone() };
+        let server = Server::start(&[&[text(&scenario)], connection].concat());
+        let port =
+            if connection[0] == "--pty" { format!("pty:{}", text(&link)) } else { server.address.clone() };
         let arguments = ["send", text(&scenario), "--port", &port, "--slack", "500"];
         let sender = command(&arguments).spawn().expect("it starts");
         thread::sleep(Duration::from_millis(700));
         server.signal(Signal::KILL);
         let (code, out, err) = ended(sender.wait_with_output().expect("it ends"));
-        assert_eq!(code, Some(4), "{place:?} {out}{err}");
+        assert_eq!(code, Some(4), "{connection:?} {out}{err}");
         assert!(out.contains("is the first that is not confirmed"), "{out}{err}");
         assert!(err.contains("the port was lost"), "{err}");
     }
@@ -198,7 +205,7 @@ fn a_port_that_is_lost_ends_with_4_and_what_is_known() {
 }
 
 #[test]
-fn a_server_that_stood_still_says_so_and_the_run_is_exact_all_the_same() {
+fn reports_a_suspended_server_and_keeps_the_run_exact() {
     let scenario = file("still.json", FEW);
     let record = scenario.with_file_name("live-still-recording.json");
     let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--record", text(&record)]);
@@ -206,7 +213,7 @@ fn a_server_that_stood_still_says_so_and_the_run_is_exact_all_the_same() {
     server.signal(Signal::STOP);
     thread::sleep(Duration::from_secs(2));
     server.signal(Signal::CONT);
-    let (code, out, _) = send(&scenario, &server.place, &["--slack", "1000"]);
+    let (code, out, _) = send(&scenario, &server.address, &["--slack", "1000"]);
     assert_eq!(code, Some(0), "{out}");
     let (code, out, err) = server.end();
     assert_eq!(code, Some(3), "{out}{err}");
@@ -216,27 +223,27 @@ fn a_server_that_stood_still_says_so_and_the_run_is_exact_all_the_same() {
 }
 
 #[test]
-fn one_client_is_served_and_a_second_one_is_told() {
+fn serves_one_client_and_refuses_a_second() {
     let scenario = file("one.json", FEW);
     let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0"]);
-    let address = server.place.strip_prefix("tcp:").expect("an address");
+    let address = server.address.strip_prefix("tcp:").expect("an address");
     let first = TcpStream::connect(address).expect("the first");
     thread::sleep(Duration::from_millis(200));
-    let mut told = String::new();
-    TcpStream::connect(address).expect("a second").read_to_string(&mut told).expect("text");
-    assert!(told.contains("another client is connected"), "{told}");
+    let mut message = String::new();
+    TcpStream::connect(address).expect("a second").read_to_string(&mut message).expect("text");
+    assert!(message.contains("another client is connected"), "{message}");
     drop(first);
     let (_, _, err) = server.end();
     assert!(err.contains("was refused"), "{err}");
 }
 
 #[test]
-fn a_recording_that_cannot_be_renamed_is_kept_under_another_name() {
+fn keeps_a_recording_that_cannot_be_renamed() {
     let scenario = file("kept.json", FEW);
     let record = scenario.with_file_name("live-kept-recording.json");
     let _ = fs::remove_dir(&record);
     let server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--record", text(&record)]);
-    let (code, out, err) = send(&scenario, &server.place, &["--slack", "1000"]);
+    let (code, out, err) = send(&scenario, &server.address, &["--slack", "1000"]);
     assert_eq!(code, Some(0), "{out}{err}");
     fs::create_dir(&record).expect("the name is free");
     let (code, out, err) = server.end();
@@ -277,7 +284,7 @@ fn old_device(listener: &TcpListener) {
 }
 
 #[test]
-fn a_device_that_does_not_tell_its_positions_is_counted_and_not_said_to_be_done() {
+fn a_device_without_positions_is_not_reported_as_done() {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let port = format!("tcp:{}", listener.local_addr().expect("an address"));
     let device = thread::spawn(move || old_device(&listener));
@@ -289,7 +296,7 @@ fn a_device_that_does_not_tell_its_positions_is_counted_and_not_said_to_be_done(
 }
 
 #[test]
-fn a_device_that_is_silent_or_says_nonsense_is_given_up() {
+fn gives_up_on_a_silent_or_invalid_device() {
     for nonsense in [&b""[..], b"hello\n", &[0; 40], &[0xff; 700]] {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = format!("tcp:{}", listener.local_addr().expect("an address"));
@@ -314,10 +321,10 @@ fn cut_after(server: &str, to_device: usize, to_host: usize) -> String {
     let device = TcpStream::connect(server.strip_prefix("tcp:").expect("an address")).expect("it serves");
     thread::spawn(move || {
         let (host, _) = listener.accept().expect("a host");
-        let pass = |mut from: TcpStream, mut to: TcpStream, most: usize| {
+        let pass = |mut from: TcpStream, mut to: TcpStream, max: usize| {
             move || {
                 let mut byte = [0];
-                for _ in 0..most {
+                for _ in 0..max {
                     if !matches!(from.read(&mut byte), Ok(1)) || to.write_all(&byte).is_err() {
                         break;
                     }
@@ -334,7 +341,7 @@ fn cut_after(server: &str, to_device: usize, to_host: usize) -> String {
 }
 
 #[test]
-fn a_connection_that_is_cut_is_told_and_nothing_is_said_to_be_done_that_is_not() {
+fn a_cut_connection_reports_no_unconfirmed_ticks_as_done() {
     // The host sends 7 frames of 8 to 18 bytes and gets replies of 17 or 25. Unit tests of sessions cut at every
     // byte.
     let scenario = file("cut.json", FEW);
@@ -351,19 +358,19 @@ fn a_connection_that_is_cut_is_told_and_nothing_is_said_to_be_done_that_is_not()
         (usize::MAX, 80),
         (usize::MAX, 95),
     ] {
-        let port = cut_after(&server.place, to_device, to_host);
+        let port = cut_after(&server.address, to_device, to_host);
         let (code, out, err) = send(&scenario, &port, &["--slack", "500"]);
         assert_eq!(code, Some(4), "{to_device} {to_host}: {out}{err}");
         assert!(!out.contains(": done"), "{to_device} {to_host}: {out}");
         // The server sees that the client has gone before the next one comes.
         thread::sleep(Duration::from_millis(100));
     }
-    let (code, out, err) = send(&scenario, &server.place, &[]);
-    assert_eq!(code, Some(0), "whoever comes after it goes on: {out}{err}");
+    let (code, out, err) = send(&scenario, &server.address, &[]);
+    assert_eq!(code, Some(0), "the next client is served: {out}{err}");
 }
 
 #[test]
-fn what_cannot_be_is_refused_before_anything_is_sent() {
+fn rejects_invalid_sessions_before_sending() {
     let (framed, raw) = (file("refused.json", FEW), file("refused-raw.json", RAW));
     let segments = file("refused-segments.json", r#"{ "source": { "motion": { "engine": "segments" } } }"#);
     let script =
@@ -395,7 +402,7 @@ fn what_cannot_be_is_refused_before_anything_is_sent() {
 const PANEL: &str = r#"{ "source": { "standalone": [ { "debounce_cycles": 1000, "groups": [ { "move": { "length": 10, "speed_hz": 1000 } } ],
     "memory": { "byte_write_cycles": 10, "hold_up_cycles": 1000 }, "inputs": [ { "cycle": 400, "input": "estop" } ] } ] } }"#;
 
-fn typed(arguments: &[&str], lines: &str) -> (Option<i32>, String, String) {
+fn serve_lines(arguments: &[&str], lines: &str) -> (Option<i32>, String, String) {
     let mut child =
         command(&[&["serve"], arguments].concat()).stdin(Stdio::piped()).spawn().expect("it starts");
     child.stdin.take().expect("piped").write_all(lines.as_bytes()).expect("it reads");
@@ -403,17 +410,17 @@ fn typed(arguments: &[&str], lines: &str) -> (Option<i32>, String, String) {
 }
 
 #[test]
-fn buttons_are_lines_on_standard_input_and_the_recording_is_the_session() {
+fn operates_buttons_by_lines_and_records_them() {
     let scenario = file("panel.json", PANEL);
     let record = scenario.with_file_name("live-panel-recording.json");
     let lines = "wait 5ms\npress start 20ms\ndance\npress start 20ms\nwait 200ms\nlimit_max 1\npress 7\nwait 1ms\nhelp\npress start 5ms\npower 0 1ms";
     for pace in ["max", "1"] {
         let more = ["--record", text(&record), "--once", "--pace", pace, "--lag", "5000"];
-        let (code, out, err) = typed(&[&[text(&scenario)], &more[..]].concat(), lines);
+        let (code, out, err) = serve_lines(&[&[text(&scenario)], &more[..]].concat(), lines);
         assert_eq!(code, Some(0), "{pace}: {out}{err}");
         assert!(out.starts_with("stdin\n") && err.contains("recorded"), "{out}{err}");
-        for told in ["dance: unknown word or input", "7: unknown input", "release NAME", "limit_max"] {
-            assert!(err.contains(told), "{told}: {err}");
+        for expected in ["dance: unknown word or input", "7: unknown input", "release NAME", "limit_max"] {
+            assert!(err.contains(expected), "{expected}: {err}");
         }
         assert!(out.contains("\npositions 100\n"), "{out}");
         // After the power cut it is READY with its zero from memory, so HELD.
@@ -433,10 +440,10 @@ fn buttons_are_lines_on_standard_input_and_the_recording_is_the_session() {
 }
 
 #[test]
-fn what_a_press_does_not_do_is_told_and_a_panel_has_no_line() {
+fn reports_presses_without_effect_and_rejects_ports() {
     let scenario = file("panel-idle.json", PANEL);
     let lines = "wait 5ms\npress pause 20ms\nwait 50ms\nestop 1\nestop 0\n1: press start\n";
-    let (code, _, err) = typed(&[text(&scenario), "--once", "--pace", "max"], lines);
+    let (code, _, err) = serve_lines(&[text(&scenario), "--once", "--pace", "max"], lines);
     assert_eq!(code, Some(0), "{err}");
     assert!(
         err.contains("pause has no effect in READY") && err.contains("there is no such controller"),
@@ -474,12 +481,12 @@ fn memory(child: &Child) -> u64 {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_flood_waits_in_the_system_and_the_next_client_is_served_at_once() {
+fn limits_buffered_input_and_serves_the_next_client() {
     let scenario = file("flood.json", FEW);
     for pace in ["0.001", "1", "max"] {
         let server =
             Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--pace", pace, "--lag", "60000"]);
-        let address = server.place.strip_prefix("tcp:").expect("an address");
+        let address = server.address.strip_prefix("tcp:").expect("an address");
         let mut flood = TcpStream::connect(address).expect("it listens");
         // STATUS again and again causes replies, too.
         let status = emit(0, Kind::Status as u8, &[]);
@@ -487,14 +494,14 @@ fn a_flood_waits_in_the_system_and_the_next_client_is_served_at_once() {
         flood.set_write_timeout(Some(Duration::from_millis(300))).expect("it can be");
         let (mut sent, mut refused) = (0, 0);
         // Without a pace the model takes as much as it can.
-        let most = if pace == "max" { 6 << 20 } else { 50 << 20 };
-        while sent < most && refused < 3 {
+        let max = if pace == "max" { 6 << 20 } else { 50 << 20 };
+        while sent < max && refused < 3 {
             match flood.write(&chunk) {
                 Ok(count) => sent += count,
                 Err(_) => refused += 1,
             }
         }
-        assert!(pace == "max" || sent < most, "{pace}: the server reads all of it");
+        assert!(pace == "max" || sent < max, "{pace}: the server reads all of it");
         assert!(memory(&server.child) < 60_000, "{pace}: {} KiB", memory(&server.child));
         drop(flood);
         if pace == "0.001" {
@@ -526,10 +533,10 @@ fn a_flood_waits_in_the_system_and_the_next_client_is_served_at_once() {
 }
 
 #[test]
-fn a_client_that_closes_its_sending_half_still_gets_its_replies() {
+fn a_half_closed_client_still_receives_replies() {
     let scenario = file("half.json", FEW);
     let mut server = Server::start(&[text(&scenario), "--tcp", "127.0.0.1:0", "--once", "--lag", "60000"]);
-    let address = server.place.strip_prefix("tcp:").expect("an address");
+    let address = server.address.strip_prefix("tcp:").expect("an address");
     let mut stream = TcpStream::connect(address).expect("it listens");
     stream.write_all(&emit(0, Kind::Status as u8, &[]).repeat(3)).expect("it reads");
     stream.shutdown(Shutdown::Write).expect("it is open");
@@ -544,7 +551,7 @@ fn a_client_that_closes_its_sending_half_still_gets_its_replies() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_link_of_a_running_session_is_not_taken_and_one_that_was_left_behind_is() {
+fn keeps_links_of_running_sessions_and_replaces_stale_ones() {
     let scenario = file("link.json", FEW);
     let link = scenario.with_file_name("live-link-port");
     let _ = fs::remove_file(&link);
@@ -559,12 +566,12 @@ fn a_link_of_a_running_session_is_not_taken_and_one_that_was_left_behind_is() {
     );
     assert_eq!(fs::read_link(&link).expect("it is still there"), target);
     thread::sleep(Duration::from_millis(100));
-    assert!(first.child.try_wait().expect("a child").is_none(), "the first session goes on");
+    assert!(first.child.try_wait().expect("a child").is_none(), "the first session continues");
     first.signal(Signal::KILL);
     drop(first);
-    assert!(link.is_symlink(), "one that was killed leaves it");
+    assert!(link.is_symlink(), "a killed session leaves the link");
     let second = Server::start(&[text(&scenario), "--pty", text(&link)]);
-    assert_eq!(second.place, format!("pty:{}", fs::read_link(&link).expect("it is there").display()));
+    assert_eq!(second.address, format!("pty:{}", fs::read_link(&link).expect("it is there").display()));
     drop(second.end());
     assert!(!link.is_symlink());
 }
@@ -591,7 +598,7 @@ fn ctrl_c_ends_the_wait_for_a_connection() {
         let mut sender = command(&["send", text(&scenario), "--port", &format!("tcp:{address}")])
             .spawn()
             .expect("it starts");
-        // Connecting takes place in a thread.
+        // Connecting takes connection in a thread.
         while !threads(&sender).contains("connect\n") {
             assert!(sender.try_wait().expect("a child").is_none(), "it has ended");
             thread::sleep(Duration::from_millis(2));
@@ -604,7 +611,7 @@ fn ctrl_c_ends_the_wait_for_a_connection() {
 }
 
 #[test]
-fn a_closed_standard_output_costs_no_stop_and_no_recording() {
+fn a_closed_standard_output_does_not_prevent_stop_or_recording() {
     // Forty seconds: the signal comes before the end.
     let scenario = file("closed.json", &LONG.replace("8000", "80000"));
     let record = scenario.with_file_name("live-closed-recording.json");
@@ -619,7 +626,7 @@ fn a_closed_standard_output_costs_no_stop_and_no_recording() {
         "60000",
         "--progress",
     ]);
-    let mut sender = command(&["send", text(&scenario), "--port", &server.place, "--slack", "1000"])
+    let mut sender = command(&["send", text(&scenario), "--port", &server.address, "--slack", "1000"])
         .spawn()
         .expect("it starts");
     drop(sender.stdout.take());
@@ -643,7 +650,7 @@ fn a_closed_standard_output_costs_no_stop_and_no_recording() {
 }
 
 #[test]
-fn a_jog_that_is_held_has_an_end_or_is_refused() {
+fn rejects_an_endless_jog() {
     let held = r#"{ "cycle": 320000, "input": "jog_plus" }"#;
     let scenario = |name: &str, inputs: &str, more: &str| {
         let controller =
@@ -675,7 +682,7 @@ fn a_jog_that_is_held_has_an_end_or_is_refused() {
     }
     let record = endless.with_file_name("live-jog-recording.json");
     let arguments = [text(&endless), "--once", "--pace", "max", "--record", text(&record)];
-    let (code, out, err) = typed(&arguments, "wait 20ms\npress jog_plus\nwait 100ms\n");
+    let (code, out, err) = serve_lines(&arguments, "wait 20ms\npress jog_plus\nwait 100ms\n");
     assert!(
         code == Some(0) && err.contains("still pressed") && err.contains("recorded"),
         "{code:?} {out}{err}"

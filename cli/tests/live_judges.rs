@@ -91,20 +91,20 @@ fn served(place: &[&str], pace: &str, seed: u64) {
     let server = Running::start(stepscope(&[&["serve", text(&scenario)], place, &more].concat()));
     let judged = python("host.py", &[&server.first, &seed.to_string()]).output().expect("it runs");
     let (code, out) = server.end();
-    let said = String::from_utf8_lossy(&judged.stdout).into_owned();
+    let positions = String::from_utf8_lossy(&judged.stdout).into_owned();
     assert!(judged.status.success(), "{place:?} {pace}: {}\n{out}", String::from_utf8_lossy(&judged.stderr));
     assert_eq!(code, Some(0), "{out}");
-    let words: Vec<&str> = said.split_whitespace().collect();
-    let [first, second, ticks] = words[..] else { panic!("{said}") };
-    assert!(out.contains(&format!("positions {first} {second}\n")), "{said} {out}");
-    assert!(out.contains(&format!("ticks_done {ticks}\n")), "{said} {out}");
+    let words: Vec<&str> = positions.split_whitespace().collect();
+    let [first, second, ticks] = words[..] else { panic!("{positions}") };
+    assert!(out.contains(&format!("positions {first} {second}\n")), "{positions} {out}");
+    assert!(out.contains(&format!("ticks_done {ticks}\n")), "{positions} {out}");
     let digest = stepscope(&["run", text(&record), "--digest"]).output().expect("it runs").stdout;
     assert!(out.contains(&format!("digest {}", String::from_utf8_lossy(&digest))), "{out}");
 }
 
 #[test]
 #[ignore = "asks Python and socat: cargo xtask test --only live"]
-fn a_host_on_pyserial_is_served_through_a_pseudo_terminal_and_a_socket() {
+fn serves_a_pyserial_host_by_pseudo_terminal_and_socket() {
     served(&["--pty"], "1", 1);
     served(&["--tcp", "127.0.0.1:0"], "1", 2);
     served(&["--tcp", "127.0.0.1:0"], "10", 3);
@@ -113,7 +113,7 @@ fn a_host_on_pyserial_is_served_through_a_pseudo_terminal_and_a_socket() {
 
 #[test]
 #[ignore = "asks Python and socat: cargo xtask test --only live"]
-fn ticks_are_done_by_a_device_on_python_though_replies_go_lost() {
+fn a_python_device_executes_all_ticks_despite_lost_replies() {
     let scenario = file("motion.json", MOTION);
     for seed in ["1", "2", "3"] {
         let device = Running::start(python("device.py", &[seed]));
@@ -127,18 +127,18 @@ fn ticks_are_done_by_a_device_on_python_though_replies_go_lost() {
             out.contains("positions 1550 -907: the sums of the ticks") && !out.contains(" repeated 0 "),
             "{out}"
         );
-        let (_, told) = device.rest();
-        let words: Vec<&str> = told.split_whitespace().collect();
-        assert_eq!(words[1..], ["1550", "-907"], "{told}");
+        let (_, report) = device.rest();
+        let words: Vec<&str> = report.split_whitespace().collect();
+        assert_eq!(words[1..], ["1550", "-907"], "{report}");
         // The device also counts the opening tick.
         let ticks = words[0].parse::<u32>().expect("a number") - 1;
-        assert!(out.contains(&format!("ticks {ticks} of {ticks} done")), "{told} {out}");
+        assert!(out.contains(&format!("ticks {ticks} of {ticks} done")), "{report} {out}");
     }
 }
 
 #[test]
 #[ignore = "asks Python and socat: cargo xtask test --only live"]
-fn a_pair_of_ports_that_socat_made_is_two_real_ports() {
+fn serve_and_send_work_over_ports_of_socat() {
     let scenario = file("socat.json", MOTION);
     let ends = ["a", "b"].map(|end| scenario.with_file_name(format!("judges-socat-{end}")));
     let pty = |end: &Path| format!("pty,raw,echo=0,link={}", text(end));
@@ -152,17 +152,17 @@ fn a_pair_of_ports_that_socat_made_is_two_real_ports() {
         Running::start(stepscope(&["serve", text(&scenario), "--port", text(&ends[0]), "--lag", "1000"]));
     let sent = stepscope(&["send", text(&scenario), "--port", text(&ends[1]), "--slack", "500"]).output();
     let sent = sent.expect("it runs");
-    let (code, told) = server.end();
+    let (code, report) = server.end();
     let _ = (socat.kill(), socat.wait());
     let out = String::from_utf8_lossy(&sent.stdout);
     assert_eq!(sent.status.code(), Some(0), "{out} {}", String::from_utf8_lossy(&sent.stderr));
     assert!(out.contains("positions 1500 -900: the sums of the ticks"), "{out}");
-    assert!(code == Some(0) && told.contains("positions 1500 -900\n"), "{told}");
+    assert!(code == Some(0) && report.contains("positions 1500 -900\n"), "{report}");
 }
 
 #[test]
 #[ignore = "asks Python and socat: cargo xtask test --only live"]
-fn a_host_that_stands_still_for_two_seconds_repeats_and_no_tick_is_wrong() {
+fn a_suspended_host_repeats_frames_and_no_tick_is_wrong() {
     let scenario = file("host-stopped.json", MOTION);
     let server =
         Running::start(stepscope(&["serve", text(&scenario), "--tcp", "127.0.0.1:0", "--lag", "1000"]));
@@ -175,16 +175,16 @@ fn a_host_that_stands_still_for_two_seconds_repeats_and_no_tick_is_wrong() {
     let _ = kill_process(Pid::from_child(&sender), Signal::CONT);
     let sent = sender.wait_with_output().expect("it ends");
     let (out, err) = (String::from_utf8_lossy(&sent.stdout), String::from_utf8_lossy(&sent.stderr));
-    let (_, told) = server.end();
+    let (_, report) = server.end();
     // The queue ran empty, which is a reported fault.
     assert_eq!(sent.status.code(), Some(3), "{out}{err}");
     assert!(out.contains("controller 0 address 3: done") && err.contains("UNDERRUN"), "{out}{err}");
-    assert!(told.contains("positions 1500 -900\n"), "{told}");
+    assert!(report.contains("positions 1500 -900\n"), "{report}");
 }
 
 #[test]
 #[ignore = "asks Python and socat: cargo xtask test --only live"]
-fn the_ten_lines_of_the_documentation_run() {
+fn the_python_example_of_the_documentation_runs() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/how-to/connect-a-program.md");
     let page = fs::read_to_string(page).expect("the page");
     let (_, from) = page.split_once("```python\n").expect("lines of Python");
@@ -203,6 +203,6 @@ fn the_ten_lines_of_the_documentation_run() {
     let begins: Vec<&str> = out.lines().map(|line| &line[..20.min(line.len())]).collect();
     assert_eq!(begins[..2], ["status    01 84 01 1", "ticks     01 81 02 0"], "{out}");
     assert!(begins[2].starts_with("positions 01 87 "), "{out}");
-    let (code, told) = server.end();
-    assert!(code == Some(0) && told.contains("positions 5 -3\n"), "{told}");
+    let (code, report) = server.end();
+    assert!(code == Some(0) && report.contains("positions 5 -3\n"), "{report}");
 }

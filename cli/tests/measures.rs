@@ -42,7 +42,7 @@ fn the_three_formats_have_the_same_figures() {
         assert!(found == expected && found != 0.0, "{names:?}: {found} {expected}");
         assert!(text.lines().any(|line| line.trim_start().starts_with(names[1])), "{names:?} in {text}");
     }
-    // What was asked for: the document's segments, filtered by a sensor, to the order that was asked for.
+    // The published segments, and the requested order.
     assert_eq!((&json["sine"]["segments"], &json["distortion"]["order"]), (&6.into(), &99.into()));
     let ratio = |name: &str| json["distortion"][name]["ideal"].as_f64().expect("a ratio");
     assert!(ratio("position") < ratio("speed") && ratio("speed") < ratio("acceleration_filtered"));
@@ -50,7 +50,7 @@ fn the_three_formats_have_the_same_figures() {
 }
 
 #[test]
-fn more_steps_than_can_be_kept_are_refused_before_the_run() {
+fn rejects_too_many_steps_before_the_run() {
     let sine = |steps: u32| {
         let sine = format!(r#"{{"sine":{{"amplitude":{{"steps":{steps}}},"period_s":1000,"periods":1}}}}"#);
         format!(
@@ -65,7 +65,7 @@ fn more_steps_than_can_be_kept_are_refused_before_the_run() {
 }
 
 #[test]
-fn a_motion_without_a_period_has_no_distortion_and_its_columns_are_aligned() {
+fn a_motion_without_a_period_has_no_distortion() {
     let (code, text, err) = measures(&[], MOTION);
     assert_eq!((code, err.as_str()), (Some(0), ""));
     assert!(!text.contains("THD") && !text.contains("Ev"), "{text}");
@@ -76,7 +76,7 @@ fn a_motion_without_a_period_has_no_distortion_and_its_columns_are_aligned() {
 }
 
 #[test]
-fn what_cannot_be_measured_ends_with_2_and_says_why() {
+fn explains_why_nothing_can_be_measured() {
     let rows: [(&[&str], &str, &str); 3] = [
         (
             &["--axis", "2"],
@@ -94,7 +94,7 @@ fn what_cannot_be_measured_ends_with_2_and_says_why() {
 }
 
 #[test]
-fn the_segments_of_a_scenarios_sine_are_those_of_its_document() {
+fn lists_the_published_segments_of_a_sine() {
     let (code, text, err) = stepscope(&["sine", "segments", "sine-2022-d00054"], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
@@ -119,18 +119,18 @@ fn the_segments_of_a_scenarios_sine_are_those_of_its_document() {
     assert_eq!((&first["to_point"], &first["to_deg"]), (&67.into(), &(67.0 * 360.0 / 2048.0).into()));
     assert_eq!(first["steps"], column("steps")[0] as u64);
 
-    for (arguments, said) in [
+    for (arguments, expected) in [
         (["sine", "segments", "exact-sine"].as_slice(), "no move is a sine of segments"),
         (&["sine", "segments", "sine-2022-d00054", "--axis", "3"], "axis"),
     ] {
         let (code, _, err) = stepscope(arguments, "");
-        assert!(code != Some(0) && err.contains(said), "{arguments:?}: {err}");
+        assert!(code != Some(0) && err.contains(expected), "{arguments:?}: {err}");
     }
 }
 
 /// The motion has too many steps to plan, so each refusal below comes before planning.
 #[test]
-fn what_a_scenario_lacks_is_found_before_its_motion_is_planned() {
+fn reports_missing_parts_before_planning() {
     const LONG: &str = r#"{ "source": { "motion": { "axes": [
         { "moves": [ { "constant": { "distance": { "steps": 1e9 }, "speed": { "steps_s": 1000 } } } ] } ] } } }"#;
     let (code, _, err) = stepscope(&["run", "-", "--digest"], LONG);

@@ -41,7 +41,7 @@ fn in_folder(folder: &PathBuf, arguments: &[&str]) -> (Option<i32>, String, Stri
 }
 
 #[test]
-fn an_output_that_is_the_input_or_another_output_is_refused() {
+fn rejects_an_output_that_is_an_input_or_another_output() {
     let folder = folder("same");
     fs::create_dir(folder.join("sub")).expect("a folder");
     fs::write(folder.join("in.json"), "{}").expect("a file");
@@ -77,10 +77,10 @@ fn an_output_that_is_the_input_or_another_output_is_refused() {
         (&["run", "in.json", "--trace", "-", "--vcd", "/dev/stdout"], standard),
     ];
     let before = files(&folder);
-    for (arguments, says) in rows {
+    for (arguments, expected) in rows {
         let (code, out, err) = in_folder(&folder, arguments);
         assert_eq!((code, out.as_str()), (Some(2), ""), "{arguments:?}: {err}");
-        assert!(err.contains(says), "{arguments:?}: {err}");
+        assert!(err.contains(expected), "{arguments:?}: {err}");
         assert_eq!(files(&folder), before, "{arguments:?}");
     }
     assert_eq!(fs::read_to_string(folder.join("in.json")).expect("a file"), "{}");
@@ -89,7 +89,7 @@ fn an_output_that_is_the_input_or_another_output_is_refused() {
 
 /// A compared scenario is an input, too.
 #[test]
-fn capture_does_not_overwrite_the_scenario_that_it_compares_with() {
+fn capture_does_not_overwrite_the_compared_scenario() {
     let folder = folder("compared");
     fs::write(folder.join("s.json"), "{}").expect("a file");
     for output in ["--scenario", "--late", "--vcd"] {
@@ -106,7 +106,7 @@ fn capture_does_not_overwrite_the_scenario_that_it_compares_with() {
 /// The system decides what a device is, not the folder.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_file_in_a_folder_of_devices_is_a_file() {
+fn writes_a_file_in_a_folder_of_devices() {
     let path = PathBuf::from(format!("/dev/shm/stepscope-test-{}.trace", std::process::id()));
     let name = path.display().to_string();
     let (code, _, err) = stepscope(&["run", "-", "--trace", &name], "{}");
@@ -122,7 +122,7 @@ fn a_file_in_a_folder_of_devices_is_a_file() {
 }
 
 #[test]
-fn a_file_is_replaced_whole_and_nothing_is_left_beside_it() {
+fn replaces_files_atomically_and_leaves_no_others() {
     let folder = folder("replaced");
     fs::write(folder.join("in.json"), "{}").expect("a file");
     fs::write(folder.join("old.trace"), "old").expect("a file");
@@ -153,7 +153,7 @@ fn a_file_is_replaced_whole_and_nothing_is_left_beside_it() {
 }
 
 #[test]
-fn a_command_that_fails_changes_no_file() {
+fn a_failing_command_changes_no_file() {
     let folder = folder("failed");
     fs::write(folder.join("in.json"), "{}").expect("a file");
     fs::write(folder.join("old.trace"), "old").expect("a file");
@@ -167,7 +167,7 @@ fn a_command_that_fails_changes_no_file() {
 }
 
 #[test]
-fn the_name_of_a_folder_is_no_output() {
+fn rejects_a_folder_as_output() {
     let folder = folder("names");
     fs::create_dir(folder.join("there")).expect("a folder");
     for name in ["new/", "there/", "there", "."] {
@@ -180,7 +180,7 @@ fn the_name_of_a_folder_is_no_output() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_an_error_and_a_device_is_not_replaced() {
+fn reports_a_full_disk_and_does_not_replace_devices() {
     for arguments in [
         &["run", "-", "--trace", "/dev/full"] as &[&str],
         &["run", "-", "--vcd", "/dev/full"],
@@ -227,7 +227,7 @@ fn ended_by(signal: &str, folder: &PathBuf) -> Option<i32> {
 
 #[cfg(unix)]
 #[test]
-fn a_run_that_is_ended_leaves_what_stood_under_the_names() {
+fn an_interrupted_run_leaves_existing_files_unchanged() {
     for signal in ["-INT", "-TERM"].into_iter().filter(|_| !signals_are_ignored()) {
         let folder = folder(&format!("ended{signal}"));
         assert_eq!(ended_by(signal, &folder), Some(130), "{signal}");
@@ -245,7 +245,7 @@ fn a_run_that_is_ended_leaves_what_stood_under_the_names() {
 
 /// Like `| head -1`.
 #[test]
-fn a_closed_pipe_ends_silently_and_soon() {
+fn a_closed_pipe_ends_a_command_silently() {
     let folder = folder("pipe");
     fs::write(folder.join("in.json"), LONG).expect("a file");
     for arguments in [

@@ -110,7 +110,7 @@ fn a_named_pipe_without_another_end_is_an_error() {
 }
 
 #[test]
-fn a_recording_goes_to_files_only() {
+fn records_only_to_files() {
     let folder = folder("recording");
     make_pipe(&folder.join("pipe"));
     fs::create_dir(folder.join("dir.session.json")).expect("a folder");

@@ -6,7 +6,7 @@ use std::fs;
 use vcd::{Command, Parser};
 
 #[test]
-fn the_summary_says_whether_each_motor_follows_and_what_it_took() {
+fn the_summary_reports_whether_each_motor_follows() {
     let (code, out, err) = stepscope(&["plant", "song-2021-stall"], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
     for line in [
@@ -23,7 +23,7 @@ fn the_summary_says_whether_each_motor_follows_and_what_it_took() {
 }
 
 #[test]
-fn a_scenario_without_a_plant_is_refused_with_the_remedy() {
+fn rejects_a_scenario_without_a_plant_with_a_remedy() {
     for command in ["plant", "settling", "limits", "resonance"] {
         let (code, out, err) = stepscope(&[command, "-"], "{}");
         assert_eq!((code, out.as_str()), (Some(2), ""));
@@ -45,7 +45,7 @@ fn a_scenario_without_a_plant_is_refused_with_the_remedy() {
 }
 
 #[test]
-fn motors_and_drivers_are_taken_from_the_list() {
+fn accepts_listed_motors_and_drivers() {
     let (code, out, err) = stepscope(&["plant", "--motors"], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
     for word in ["17hs4401       NEMA 17, MotionKing", "\ndrivers\n", "\ntmc2209 "] {
@@ -69,15 +69,15 @@ fn motors_and_drivers_are_taken_from_the_list() {
         json["tables"]["limits"][0]["start_stop_steps_s"].as_f64().expect("a rate")
     };
     assert!(limits("as1060") < 0.6 * limits("song-2021"));
-    for (option, told) in [("--motor", "invalid value"), ("--drive", "possible values: ideal")] {
+    for (option, expected) in [("--motor", "invalid value"), ("--drive", "possible values: ideal")] {
         let (code, _, err) = stepscope(&["resonance", "-", option, "none"], r#"{"plant":{}}"#);
-        assert!(code == Some(2) && err.contains(told), "{err}");
+        assert!(code == Some(2) && err.contains(expected), "{err}");
     }
     assert_eq!(stepscope(&["plant", "-", "--motors"], r#"{"plant":{}}"#).0, Some(2));
 }
 
 #[test]
-fn a_grid_that_is_too_coarse_for_what_the_rotor_does_is_a_warning() {
+fn warns_of_a_grid_too_coarse_for_the_rotor() {
     let json = r#"{"plant":{},"source":{"motion":{"axes":[{"motor":{"sine_torque_mn_m":1000000,"sine_per_turn":1000}}]}}}"#;
     let (code, out, err) = stepscope(&["plant", "-"], json);
     assert_eq!((code, err.as_str()), (Some(0), ""));
@@ -89,7 +89,7 @@ fn a_grid_that_is_too_coarse_for_what_the_rotor_does_is_a_warning() {
 }
 
 #[test]
-fn points_are_a_table_and_real_variables_of_a_dump() {
+fn writes_points_as_a_table_and_as_real_variables() {
     let folder = tempfile::tempdir().expect("a folder");
     let (csv, dump) = (folder.path().join("points.csv"), folder.path().join("points.vcd"));
     let arguments = [
@@ -131,7 +131,7 @@ fn points_are_a_table_and_real_variables_of_a_dump() {
 }
 
 #[test]
-fn results_are_tables_for_scripts() {
+fn plant_results_are_json_tables() {
     let tables = |arguments: &[&str], input: &str| {
         let (code, out, err) = stepscope(arguments, input);
         assert_eq!(code, Some(0), "{err}");
@@ -155,7 +155,7 @@ fn results_are_tables_for_scripts() {
 }
 
 #[test]
-fn the_settling_time_is_written_into_a_scenario() {
+fn writes_the_settling_time_into_a_scenario() {
     let (code, out, err) = stepscope(&["settling", "patent-2019-figure-2", "--write", "-"], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let scenario: Value = serde_json::from_str(&out).expect("JSON");
@@ -174,7 +174,7 @@ fn threads_do_not_change_the_map() {
 }
 
 #[test]
-fn progress_is_told_where_it_is_wanted() {
+fn plant_commands_print_progress_on_request() {
     for command in ["plant", "limits", "resonance", "settling"] {
         let (code, _, err) = stepscope(&[command, "-", "--progress"], r#"{"plant":{}}"#);
         assert_eq!(code, Some(0));

@@ -25,7 +25,7 @@ fn tables(file: &str, arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn steps_of_each_motor_are_counted_by_direction() {
+fn counts_steps_of_each_motor_by_direction() {
     // (file, options, steps to the right and to the left of each channel)
     for (file, options, expected) in [
         ("dsview.csv", &[][..], &[(20, 5)][..]),
@@ -54,7 +54,7 @@ fn steps_of_each_motor_are_counted_by_direction() {
 }
 
 #[test]
-fn times_and_rates_are_those_of_the_file() {
+fn reads_times_and_rates_of_files() {
     // (file, options, figure, value)
     for (file, options, figure, expected) in [
         ("dsview.csv", &[][..], "first_s", 0.001),
@@ -77,7 +77,7 @@ fn times_and_rates_are_those_of_the_file() {
 }
 
 #[test]
-fn bytes_are_those_that_were_sent() {
+fn decodes_the_bytes_that_were_sent() {
     let hello = b"Hello World!\r\n".repeat(3);
     // (file, options, how many bytes, the first of them)
     for (file, options, count, first) in [
@@ -120,7 +120,7 @@ fn bytes_are_those_that_were_sent() {
 }
 
 #[test]
-fn what_a_file_does_not_say_is_asked_for_and_never_guessed() {
+fn never_guesses_missing_rates() {
     // (file, the option that the message names)
     for (file, expected) in [
         ("sample-numbers.csv", "--sample-rate"),
@@ -141,7 +141,7 @@ fn what_a_file_does_not_say_is_asked_for_and_never_guessed() {
 }
 
 #[test]
-fn each_edge_is_a_step_also_where_edges_are_a_tick_apart() {
+fn counts_each_edge_as_a_step_even_one_tick_apart() {
     let rows = |row: &dyn Fn(u64) -> String| -> String { (0..=40).map(row).collect() };
     let dedge = format!("time_us,STEP\n{}", rows(&|k| format!("{k},{}\n", k % 2)));
     let encoder = format!("time_us,A,B\n{}", rows(&|k| format!("{k},{},{}\n", k.div_ceil(2) % 2, k / 2 % 2)));
@@ -154,7 +154,7 @@ fn each_edge_is_a_step_also_where_edges_are_a_tick_apart() {
 }
 
 #[test]
-fn what_looks_like_something_else_is_said() {
+fn suggests_parity_and_both_edges() {
     for (file, expected) in [("8e1.csv", "--uart 8E1"), ("dedge.vcd", "--both-edges")] {
         let (_, out, err) = capture(file, &[]);
         assert!((out.clone() + &err).contains(expected), "{file}: {out}{err}");
@@ -162,7 +162,7 @@ fn what_looks_like_something_else_is_said() {
 }
 
 #[test]
-fn pulses_are_checked_with_their_real_widths() {
+fn checks_the_real_widths_of_pulses() {
     for (file, driver, rule, count) in [
         ("83ns.vcd", "a4988", "step_high", 20),
         ("41667ps-short.vcd", "a4988", "step_high", 20),
@@ -179,7 +179,7 @@ fn pulses_are_checked_with_their_real_widths() {
 }
 
 #[test]
-fn steps_of_any_channel_are_written_without_a_plan() {
+fn writes_steps_of_any_channel_without_a_plan() {
     let dump = "two-motors-one-dir.vcd";
     let (code, of_second, err) = capture(dump, &["--steps", "-", "--channel", "1"]);
     assert_eq!((code, of_second.lines().count(), err.as_str()), (Some(0), 51, ""));
@@ -192,7 +192,7 @@ fn steps_of_any_channel_are_written_without_a_plan() {
 }
 
 #[test]
-fn a_log_of_klipper_without_its_frequency_asks_for_the_controllers_clock() {
+fn a_klipper_log_without_frequency_requires_a_clock() {
     let log = "reset_step_clock oid=3 clock=0\nqueue_step oid=3 interval=1000 count=3 add=0\n";
     let (code, out, err) = stepscope(&["capture", "-"], log);
     assert!(code == Some(2) && out.is_empty(), "{out}{err}");
@@ -205,7 +205,7 @@ fn a_log_of_klipper_without_its_frequency_asks_for_the_controllers_clock() {
 }
 
 #[test]
-fn directions_of_annotations_are_lines_of_their_own_and_the_base_is_an_option() {
+fn separates_directions_of_annotations_and_accepts_a_base() {
     let annotations = "uart-1: rx-data: 72\nuart-1: tx-data: 65\nuart-1: rx-data: 73\n";
     for (base, expected) in [("hex", ["72", "73", "65"]), ("dec", ["48", "49", "41"])] {
         let options = ["capture", "-", "--baud", "9600", "--bytes", "-", "--base", base];

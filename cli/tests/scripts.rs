@@ -36,7 +36,7 @@ fn rows<'t>(tables: &'t Map<String, Value>, name: &str) -> &'t Vec<Value> {
 }
 
 #[test]
-fn every_table_comes_as_json_of_one_shape() {
+fn every_json_table_has_the_documented_shape() {
     let measured = "length_mm,steps\n100,3995\n200,8005\n300,12010\n";
     let cases: [(&[&str], &str, &[&str]); 12] = [
         (&["run", "-"], MOTION, &["run", "controllers", "positions"]),
@@ -61,7 +61,7 @@ fn every_table_comes_as_json_of_one_shape() {
 }
 
 #[test]
-fn the_figures_are_those_of_the_text() {
+fn json_and_text_have_the_same_figures() {
     let preset = stepscope(&["presets", "four-controllers-framed"], "").1;
     let found = tables(&["run", "-", "--json"], &preset);
     let text = stepscope(&["run", "-"], &preset).1;
@@ -128,7 +128,7 @@ fn a_shell_completes_commands_options_presets_and_files() {
 }
 
 #[test]
-fn shells_have_scripts_and_man_shows_every_command() {
+fn writes_shell_scripts_and_manual_pages() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let (code, out, err) = stepscope(&["completions", shell], "");
         assert_eq!((code, err.as_str()), (Some(0), ""), "{shell}");

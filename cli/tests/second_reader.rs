@@ -127,14 +127,14 @@ fn cases() -> [(&'static str, &'static str, u64, u8, &'static [&'static str]); 4
 
 #[test]
 #[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
-fn gtkwaves_programs_read_the_same_edges() {
+fn gtkwave_reads_the_same_edges() {
     let [to_waves, from_waves] = ["vcd2fst", "fst2vcd"].map(program);
     for (title, json, clock_hz, channels, options) in cases() {
         let (trace, dump) = run(title, json, options);
-        let (waves, told) = (dump.with_extension("fst"), dump.with_extension("told.vcd"));
+        let (waves, copy) = (dump.with_extension("fst"), dump.with_extension("copy.vcd"));
         call(&to_waves, &[&dump, &waves]);
-        call(&from_waves, &[Path::new("-f"), &waves, Path::new("-o"), &told]);
-        let found = edges_of_dump(&fs::read(told).expect("what it tells"), "stepscope", clock_hz);
+        call(&from_waves, &[Path::new("-f"), &waves, Path::new("-o"), &copy]);
+        let found = edges_of_dump(&fs::read(copy).expect("its output"), "stepscope", clock_hz);
         compare(&found, &trace, channels, title);
     }
 }
@@ -149,11 +149,11 @@ fn sigrok_reads_the_same_edges() {
     {
         let title = format!("sigrok-{title}");
         let (trace, dump) = run(&title, json, options);
-        let told = dump.with_extension("told.vcd");
+        let copy = dump.with_extension("copy.vcd");
         let arguments = ["-I", "vcd", "-i"].map(Path::new);
         let output = ["-O", "vcd", "-o"].map(Path::new);
-        call(&sigrok, &[&arguments[..], &[&dump], &output, &[&told]].concat());
-        let found = edges_of_dump(&fs::read(told).expect("what it tells"), "libsigrok", clock_hz);
+        call(&sigrok, &[&arguments[..], &[&dump], &output, &[&copy]].concat());
+        let found = edges_of_dump(&fs::read(copy).expect("its output"), "libsigrok", clock_hz);
         compare(&found, &trace, channels, &title);
     }
 }
@@ -161,7 +161,7 @@ fn sigrok_reads_the_same_edges() {
 /// sigrok takes a sample per timescale unit, so a fine timescale makes a short move very long.
 #[test]
 #[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
-fn sigrok_opens_a_move_of_0_4_s_with_few_samples() {
+fn sigrok_opens_a_dump_with_few_samples() {
     let sigrok = program("sigrok-cli");
     let (_, dump) = run("sigrok-move", "{}", &[]);
     let text = fs::read_to_string(&dump).expect("the dump");

@@ -8,7 +8,7 @@ const MOTION: &str = r#"{ "title": "A table", "bus": { "channels": 2 }, "source"
     { "moves": [ { "cosine": { "distance": { "steps": -6400 }, "duration_s": 2, "ramp_s": 0.5 } } ] } ] } } }"#;
 
 #[test]
-fn a_summary_has_a_row_for_each_axis_form_and_width() {
+fn a_summary_has_a_row_per_axis_form_and_format() {
     let (code, out, err) = stepscope(&["tables", "-"], MOTION);
     assert_eq!((code, err.as_str()), (Some(0), ""));
     let rows: Vec<Vec<&str>> = out.lines().map(|line| line.split_whitespace().collect()).collect();
@@ -29,7 +29,7 @@ fn a_summary_has_a_row_for_each_axis_form_and_width() {
 
 /// Klipper's own program makes 52 entries of the default motion.
 #[test]
-fn klippers_window_and_widths_can_be_asked_for() {
+fn supports_klippers_window_and_entries() {
     let options = ["tables", "-", "--form", "compressed", "--entries", "klipper", "--interval-part", "2"];
     let row = |more: &[&str]| -> Vec<String> {
         let (code, out, err) = stepscope(&[&options, more].concat(), "{}");
@@ -53,10 +53,10 @@ fn klippers_window_and_widths_can_be_asked_for() {
 }
 
 #[test]
-fn steps_of_any_origin_are_compressed() {
+fn compresses_steps_of_a_csv_table() {
     // 1000 steps 100 us apart, every seventh 3 us late, and 500 back.
-    let way = |k: u64| if k < 1000 { "right" } else { "left" };
-    let row = |k: u64| format!("{},{}\n", 100 * (k + 1) + 3 * u64::from(k.is_multiple_of(7)), way(k));
+    let direction = |k: u64| if k < 1000 { "right" } else { "left" };
+    let row = |k: u64| format!("{},{}\n", 100 * (k + 1) + 3 * u64::from(k.is_multiple_of(7)), direction(k));
     let list: String = std::iter::once("time_us,dir\n".to_owned()).chain((0..1500).map(row)).collect();
     let (code, out, err) = stepscope(&["tables", "--steps", "-", "--entries", "q16"], &list);
     assert_eq!((code, err.as_str()), (Some(0), ""));
@@ -69,24 +69,24 @@ fn steps_of_any_origin_are_compressed() {
     let (code, out, _) =
         stepscope(&["tables", "--steps", "-", "--format", "c", "--name", "captured_1"], &list);
     assert!(code == Some(0) && out.contains("static const uint64_t captured_1_interval[4]"), "{out}");
-    for (list, told) in
+    for (list, expected) in
         [("cycle\n100\n110\n", "step 2"), ("cycle\n1\nlater\n", "line 3: cycle: \"later\" is out of range")]
     {
         let (code, _, err) = stepscope(&["tables", "--steps", "-", "--format", "csv"], list);
-        assert!(code == Some(2) && err.contains(told), "{err}");
+        assert!(code == Some(2) && err.contains(expected), "{err}");
     }
 }
 
 #[test]
-fn a_table_of_too_many_steps_is_refused_before_one_is_looked_at() {
+fn rejects_a_table_of_too_many_steps_before_planning() {
     let motion = r#"{"source":{"motion":{"axes":[{"moves":[{"sine_segments":{"amplitude":{"steps":1e9},"period_s":86400,"periods":1}}]}]}}}"#;
     let (code, out, err) = stepscope(&["tables", "-"], motion);
     assert_eq!((code, err.as_str()), (Some(0), ""));
-    let refused = |form: &str, most: &str| {
-        let told = format!(
-            "4000000000 steps of a table exceed the maximum of {most}; use a shorter motion, or a table for each part of it"
+    let refused = |form: &str, max: &str| {
+        let expected = format!(
+            "4000000000 steps of a table exceed the maximum of {max}; use a shorter motion, or a table for each part of it"
         );
-        out.lines().filter(|row| row.contains(form) && row.contains(&told)).count()
+        out.lines().filter(|row| row.contains(form) && row.contains(&expected)).count()
     };
     let found =
         [refused("exact", "4000000"), refused("document", "100000000"), refused("compressed", "100000000")];
@@ -94,7 +94,7 @@ fn a_table_of_too_many_steps_is_refused_before_one_is_looked_at() {
 }
 
 #[test]
-fn a_table_is_written_in_each_language() {
+fn writes_tables_in_each_language() {
     let rows: [(&[&str], &[&str]); 4] = [
         (
             &["--format", "c"],
@@ -125,7 +125,7 @@ fn a_table_is_written_in_each_language() {
 /// and step of the comment.
 #[cfg(unix)]
 #[test]
-fn a_compiler_takes_the_files_and_the_walk_comes_where_the_comment_says() {
+fn exported_c_compiles_and_ends_at_the_stated_time() {
     use std::{env, fs, path::PathBuf, process::Command};
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tables-c");
     fs::create_dir_all(folder.join("avr")).expect("a folder");
@@ -166,19 +166,19 @@ int main(void) {{
             fs::write(folder.join("main.c"), main).expect("a file");
             let compiler = env::var("CC").unwrap_or_else(|_| "cc".to_owned());
             let compiled = Command::new(compiler)
-                .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-I.", "-o", "walk", "main.c"])
+                .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-I.", "-o", "sum", "main.c"])
                 .current_dir(&folder)
                 .output()
                 .expect("there is a compiler of C, as Rust's linker is one");
             assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
-            let walked = Command::new(folder.join("walk")).output().expect("it starts");
-            assert_eq!(String::from_utf8_lossy(&walked.stdout), format!("{time} 1"), "{format} {entries}");
+            let ran = Command::new(folder.join("sum")).output().expect("it starts");
+            assert_eq!(String::from_utf8_lossy(&ran.stdout), format!("{time} 1"), "{format} {entries}");
         }
     }
 }
 
 #[test]
-fn an_array_that_the_compiler_may_refuse_is_a_warning_with_numbers() {
+fn warns_of_arrays_too_large_for_the_compiler() {
     let motion = r#"{ "clock_hz": 200000000, "source": { "motion": { "axes": [ { "moves": [
         { "sine": { "amplitude": { "steps": 20000 }, "period_s": 40, "periods": 1 } } ] } ] } } }"#;
     let options = ["tables", "-", "--form", "exact", "--entries", "ticks", "--format"];
@@ -200,7 +200,7 @@ fn an_array_that_the_compiler_may_refuse_is_a_warning_with_numbers() {
 }
 
 #[test]
-fn names_that_c_keeps_for_itself_are_refused_and_told() {
+fn rejects_names_reserved_in_c() {
     for name in ["string_1", "memory_x", "is_a", "total_1", "uint8_t", "e1_axis", "isr_x", "int"] {
         let (code, _, err) = stepscope(&["tables", "-", "--format", "c", "--name", name], MOTION);
         let expected = if name == "is_a" { Some(0) } else { Some(2) };
@@ -212,7 +212,7 @@ fn names_that_c_keeps_for_itself_are_refused_and_told() {
 }
 
 #[test]
-fn what_cannot_be_a_table_ends_with_2_and_says_why() {
+fn explains_why_there_is_no_table() {
     let rows: [(&[&str], &str, &str); 5] = [
         (
             &["--format", "c", "--axis", "2"],
@@ -236,7 +236,7 @@ fn what_cannot_be_a_table_ends_with_2_and_says_why() {
 }
 
 #[test]
-fn the_sines_tables_have_their_columns_and_the_documents_rows() {
+fn sine_tables_have_the_published_rows() {
     let sweep = ["sine", "sweep", "--from", "0.0054", "--to", "0.006", "--points", "2", "--order", "1023"];
     let (code, out, _) = stepscope(&sweep, "");
     assert_eq!(code, Some(0));

@@ -1,4 +1,4 @@
-//! Names and values from outside must not control the terminal.
+//! External names and values must not control the terminal.
 
 use crate::program::stepscope;
 use std::{fs, path::PathBuf};
@@ -17,7 +17,7 @@ fn assert_safe(what: &str, text: &str) {
 }
 
 #[test]
-fn no_message_sends_a_control_character_of_others() {
+fn escapes_control_characters_in_every_message() {
     let json = json();
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("terminal");
     fs::create_dir_all(&folder).expect("a folder");
@@ -33,7 +33,7 @@ fn no_message_sends_a_control_character_of_others() {
     let dump = format!(
         "$timescale 1 us $end\n$var wire 1 ! {HOSTILE} $end\n$enddefinitions $end\n#0\n0!\n#5\n1!\n#9\n0!\n"
     );
-    let analyser = format!("Time [s],{HOSTILE}\n0.0,0\n0.001,1\n0.002,0\n");
+    let analyzer = format!("Time [s],{HOSTILE}\n0.0,0\n0.001,1\n0.002,0\n");
     let calls: &[(&[&str], &str)] = &[
         (&["run", &missing], ""),
         (&["run", &named], ""),
@@ -54,7 +54,7 @@ fn no_message_sends_a_control_character_of_others() {
         (&["capture", &missing], ""),
         (&["capture", "-"], &dump),
         (&["capture", "-", "--json"], &dump),
-        (&["capture", "-"], &analyser),
+        (&["capture", "-"], &analyzer),
         (&["capture", "-", "--map", HOSTILE], &dump),
         (&["capture", "-"], &head),
         (&["send", "-", "--port", HOSTILE], "{}"),
@@ -72,7 +72,7 @@ fn no_message_sends_a_control_character_of_others() {
 
 /// Text goes through `cli/src/terminal.rs`; exceptions are listed here.
 #[test]
-fn nothing_prints_text_but_through_the_one_writer() {
+fn all_text_is_printed_by_the_escaping_writer() {
     fn sources(folder: &PathBuf, found: &mut Vec<PathBuf>) {
         for entry in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
             if entry.is_dir() {

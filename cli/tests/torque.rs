@@ -7,7 +7,7 @@ fn axes(axes: &str) -> String {
 }
 
 #[test]
-fn an_axis_with_torque_to_spare_says_so_and_names_the_longest_ramp() {
+fn reports_enough_torque_and_the_longest_ramp() {
     let scenario = axes(r#"{"moves":[{"cosine":{}}],"motor":{"working_rate_hz":19200}},{}"#);
     let (code, out, err) = stepscope(&["torque", "-"], &scenario);
     assert_eq!((code, err.as_str()), (Some(0), ""));
@@ -26,7 +26,7 @@ axis 0
 }
 
 #[test]
-fn a_shortage_is_a_warning_with_numbers_and_a_remedy() {
+fn warns_of_a_torque_shortage_with_numbers_and_a_remedy() {
     let scenario = axes(
         r#"{},{"moves":[{"cosine":{}},{"trapezoid":{}}],"motor":{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}}"#,
     );
@@ -51,7 +51,7 @@ fn a_shortage_is_a_warning_with_numbers_and_a_remedy() {
 }
 
 #[test]
-fn where_there_is_a_plant_it_says_whether_both_models_agree_and_why_not() {
+fn compares_the_torque_curve_with_the_plant() {
     let (code, out, err) = stepscope(&["torque", "song-2021-motor"], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
     assert!(out.contains("\n  plant            follows; both models agree\n"), "{out}");
@@ -61,7 +61,7 @@ fn where_there_is_a_plant_it_says_whether_both_models_agree_and_why_not() {
     let (_, out, _) = stepscope(&["torque", "song-2021-stall", "--json"], "");
     let json: serde_json::Value = serde_json::from_str(&out).expect("JSON");
     assert_eq!(json["tables"]["axes"][0]["models_agree"], false);
-    // Without a plant it is run where it is asked for, and what then is wrong is told.
+    // Without a plant, --plant simulates one, and its problems are reported.
     let scenario = axes(r#"{"motor":{}},{"motor":{"supply_v":36}}"#);
     let (_, out, _) = stepscope(&["torque", "-"], &scenario);
     assert!(!out.contains("plant"), "{out}");
@@ -82,7 +82,7 @@ fn where_there_is_a_plant_it_says_whether_both_models_agree_and_why_not() {
 }
 
 #[test]
-fn what_limits_a_moves_ramps_is_named() {
+fn names_the_limit_of_ramps() {
     let of = |moved: &str, motor: &str| {
         let (code, out, err) =
             stepscope(&["torque", "-"], &axes(&format!(r#"{{"moves":[{moved}],"motor":{motor}}}"#)));
@@ -120,7 +120,7 @@ fn what_limits_a_moves_ramps_is_named() {
 }
 
 #[test]
-fn the_curve_is_a_table_that_starts_full_and_falls() {
+fn the_torque_curve_starts_at_full_torque_and_falls() {
     let scenario = axes(r#"{"motor":{}}"#);
     let (code, out, _) = stepscope(&["torque", "-", "--format", "csv"], &scenario);
     assert_eq!(code, Some(0));
@@ -136,7 +136,7 @@ fn the_curve_is_a_table_that_starts_full_and_falls() {
 }
 
 #[test]
-fn steps_a_millimeter_are_fitted_and_made_into_mechanics() {
+fn fits_steps_per_millimeter_and_prints_mechanics() {
     let table = "length_cm, steps\n10,5650\n30.5,17232.5\n45,25425\n";
     let (code, out, err) = stepscope(&["calibrate", "-"], table);
     assert_eq!((code, err.as_str()), (Some(0), ""));
@@ -151,7 +151,7 @@ fn steps_a_millimeter_are_fitted_and_made_into_mechanics() {
 }
 
 #[test]
-fn very_few_steps_a_millimeter_keep_their_digits() {
+fn prints_very_few_steps_per_millimeter_with_all_digits() {
     let (code, out, _) = stepscope(&["calibrate", "-"], "length_mm,steps\n0,0\n1e12,1\n");
     assert_eq!(code, Some(0));
     assert!(
@@ -161,7 +161,7 @@ fn very_few_steps_a_millimeter_keep_their_digits() {
 }
 
 #[test]
-fn a_table_without_a_line_is_refused() {
+fn rejects_tables_that_fix_no_line() {
     for (table, expected) in [
         ("a,b\n1,2\n", "no column of lengths; use a first row"),
         ("length_mm\n1\n", "no column steps; use a first row"),
@@ -198,7 +198,7 @@ fn lists(plant: &str) -> String {
 }
 
 #[test]
-fn steps_without_a_motion_are_held_against_the_plants_motor_or_the_one_that_is_named() {
+fn checks_steps_without_a_motion_against_a_motor() {
     let (code, _, err) = stepscope(&["torque", "-"], &lists(""));
     assert!(
         code == Some(2) && err.contains("plant: the scenario has no motor; use --motor, or \"plant\": {}"),

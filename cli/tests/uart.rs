@@ -43,7 +43,7 @@ fn table(name: &str, bytes: &[u8], bit_ns: u64, stop: u64, inverted: bool) -> St
 }
 
 #[test]
-fn few_samples_per_bit_and_gaps_of_any_length_give_every_byte() {
+fn decodes_every_byte_with_few_samples_and_any_gaps() {
     let hello = bytes(&[&recording("hello-921600-5MHz.sr"), "--map", "RX=TX"], "");
     assert_eq!(hello, b"Hello World!\r\n".repeat(3));
     let found = bytes(&[&recording("silent-wrong-4.30.sr")], "");
@@ -58,7 +58,7 @@ fn few_samples_per_bit_and_gaps_of_any_length_give_every_byte() {
 }
 
 #[test]
-fn parity_is_an_option_and_is_proposed() {
+fn proposes_and_accepts_parity() {
     let file = recording("8e1.csv");
     assert_eq!(bytes(&[&file, "--uart", "8E1"], ""), b"Hello World!\r\n".repeat(3));
     for options in [&[][..], &["--map", "RX=RX"], &["--bytes", "-"], &["--json"]] {
@@ -86,7 +86,7 @@ fn parity_is_an_option_and_is_proposed() {
 }
 
 #[test]
-fn a_line_that_no_rate_fits_is_asked_for() {
+fn requires_a_bit_rate_if_none_fits() {
     // Random pulses, with steps on other channels.
     let mut state = 1_u64;
     let mut noise = "Time [s],RX,STEP\n0.0,1,0\n".to_owned();
@@ -111,7 +111,7 @@ fn a_line_that_no_rate_fits_is_asked_for() {
 }
 
 #[test]
-fn a_line_is_proposed_as_rx_whatever_its_polarity_and_never_as_step() {
+fn proposes_a_serial_line_of_either_polarity_as_rx() {
     let text = b"G1 X10 Y20 F600\r\nok\r\n".repeat(4);
     for (name, stop, inverted, map) in [
         ("CH1", 10, false, "RX=CH1"),

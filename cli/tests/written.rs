@@ -15,7 +15,7 @@ fn folder(name: &str) -> PathBuf {
 
 /// Stand-alone controllers have no line, so the inputs are written.
 #[test]
-fn the_line_of_stand_alone_controllers_gives_the_same_run() {
+fn a_run_of_exported_inputs_is_the_same() {
     let folder = folder("stand-alone");
     for preset in CONTROLLER_PRESETS.iter().chain(CONTROLLER_PLANT_PRESETS) {
         let line = folder.join(format!("{}.json", preset.id)).display().to_string();
@@ -29,7 +29,7 @@ fn the_line_of_stand_alone_controllers_gives_the_same_run() {
 }
 
 #[test]
-fn a_long_scenario_is_written_short_enough_to_be_read_again() {
+fn writes_long_scenarios_short_enough_to_be_read() {
     let folder = folder("long");
     let line = folder.join("line.json").display().to_string();
     let motion = r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":45000},"speed":{"steps_s":500}}}]}]}}}"#;

@@ -3,7 +3,7 @@
 use super::advice;
 use crate::{
     failure::Failure,
-    motors::Named,
+    motors::NamedMotor,
     options::{Json, ShowProgress},
     quantity::{ExactMicroseconds, Microseconds, parsed, whole},
     timing,
@@ -113,7 +113,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     pub(super) show: ShowProgress,
     #[command(flatten)]
-    pub(super) named: Named,
+    pub(super) named: NamedMotor,
     #[command(flatten)]
     pub(super) timing: timing::Options,
 }

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_a_change_or_has_an_error() {
+    fn parses_lines_or_explains_the_error() {
         let rows = [
             ("press start 100ms", level_of(0, Signal::Start, true, Some(0.1))),
             ("press jog_plus", level_of(0, Signal::JogPlus, true, None)),
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_is_the_nearest_number_of_cycles() {
+    fn rounds_times_to_the_nearest_cycle() {
         for (text, cycles) in
             [("100ms", 1_600_000), ("62.5us", 1000), ("0.03us", 0), ("0s", 0), ("2s", 32_000_000)]
         {

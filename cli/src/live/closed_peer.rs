@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_socket_is_closed_when_its_rows_have_no_inode() {
+    fn a_socket_without_inode_is_closed() {
         let rows = "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode
    0: 0100007F:1267 0100007F:B0A2 01 00000000:00000000 00:00000000 00000000     0        0 4242 1 0 20 4 30 10 -1
    1: 0100007F:B0A2 0100007F:1267 01 00000000:00000000 00:00000000 00000000     0        0 4243 1 0 20 4 30 10 -1
@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn a_client_that_closed_is_seen_behind_bytes_that_nobody_reads() {
+    fn detects_a_closed_client_behind_unread_bytes() {
         use std::{
             io::Write as _,
             net::{Shutdown, TcpListener, TcpStream},

@@ -86,29 +86,22 @@ pub(crate) fn write_all(port: &mut dyn Port, mut bytes: &[u8], within: Duration)
     Ok(())
 }
 
-fn received(result: io::Result<usize>) -> io::Result<Received> {
+/// Whether a read or a write has to be repeated later.
+fn is_retry(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
+}
+
+fn read_result(result: io::Result<usize>) -> io::Result<Received> {
     match result {
         Ok(0) => Ok(Received::Gone),
         Ok(count) => Ok(Received::Bytes(count)),
-        Err(error) => match error.kind() {
-            ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted => Ok(Received::Nothing),
-            _ => Err(error),
-        },
+        Err(error) if is_retry(&error) => Ok(Received::Nothing),
+        Err(error) => Err(error),
     }
 }
 
-fn written(result: io::Result<usize>) -> io::Result<usize> {
-    match result {
-        Err(error)
-            if matches!(
-                error.kind(),
-                ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted
-            ) =>
-        {
-            Ok(0)
-        }
-        other => other,
-    }
+fn write_result(result: io::Result<usize>) -> io::Result<usize> {
+    result.or_else(|error| if is_retry(&error) { Ok(0) } else { Err(error) })
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -150,10 +143,10 @@ impl Serial {
         };
         port.set_configuration(&wanted).map_err(|error| refused(&error.to_string()))?;
         let actual = port.get_configuration().map_err(failed)?;
-        let has = actual.get_baud_rate().unwrap_or(0);
-        // Dividers are coarse; receivers tolerate a few percent (A4).
-        if u64::from(has.abs_diff(baud)) * 50 > u64::from(baud) {
-            return Err(refused(&format!("it reports {has} baud")));
+        let actual_baud = actual.get_baud_rate().unwrap_or(0);
+        // Dividers are coarse, and receivers tolerate a few percent.
+        if u64::from(actual_baud.abs_diff(baud)) * 50 > u64::from(baud) {
+            return Err(refused(&format!("it reports {actual_baud} baud")));
         }
         let frame = (actual.get_char_size().ok(), actual.get_stop_bits().ok(), actual.get_parity().ok());
         if frame != (Some(CharSize::Bits8), Some(StopBits::One), Some(Parity::None)) {
@@ -161,7 +154,7 @@ impl Serial {
         }
         port.set_write_timeout(WRITE_WAIT).map_err(failed)?;
         if rs485 == Rs485::Kernel {
-            kernel_turns(&port).map_err(|error| {
+            enable_kernel_rs485(&port).map_err(|error| {
                 Failure::Unusable(
                     name(),
                     format!("the port cannot switch an RS-485 transceiver: {error}; use --rs485 auto or rts"),
@@ -179,33 +172,33 @@ impl Serial {
 }
 
 #[cfg(target_os = "linux")]
-fn kernel_turns(port: &SerialPort) -> io::Result<()> {
+fn enable_kernel_rs485(port: &SerialPort) -> io::Result<()> {
     port.set_rs4xx_mode(serial2::rs4xx::Rs485Config::new())
 }
 
 #[cfg(not(target_os = "linux"))]
-fn kernel_turns(_port: &SerialPort) -> io::Result<()> {
+fn enable_kernel_rs485(_port: &SerialPort) -> io::Result<()> {
     Err(ErrorKind::Unsupported.into())
 }
 
 #[cfg(unix)]
 fn has_bytes(port: &impl std::os::fd::AsFd, wait: Duration) -> io::Result<bool> {
-    poll_for(port, rustix::event::PollFlags::IN, wait)
+    Ok(!poll_for(port, rustix::event::PollFlags::IN, wait)?.is_empty())
 }
 
-/// Uses nanoseconds: timeouts of ports and sockets have the resolution of the system's tick.
+/// Waits for events. Uses nanoseconds: timeouts of ports and sockets have the resolution of the system's tick.
 #[cfg(unix)]
 fn poll_for(
     port: &impl std::os::fd::AsFd,
     flags: rustix::event::PollFlags,
     wait: Duration,
-) -> io::Result<bool> {
-    use rustix::event::{PollFd, Timespec, poll};
+) -> io::Result<rustix::event::PollFlags> {
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
     let mut fds = [PollFd::new(port, flags)];
     let timeout = Timespec { tv_sec: wait.as_secs().cast_signed(), tv_nsec: wait.subsec_nanos().into() };
     match poll(&mut fds, Some(&timeout)) {
-        Ok(found) => Ok(found > 0),
-        Err(rustix::io::Errno::INTR) => Ok(false),
+        Ok(_) => Ok(fds[0].revents()),
+        Err(rustix::io::Errno::INTR) => Ok(PollFlags::empty()),
         Err(error) => Err(error.into()),
     }
 }
@@ -223,11 +216,11 @@ impl Port for Serial {
         }
         let wait = if wait.is_zero() { wait } else { wait.max(MIN_WAIT) };
         self.port.set_read_timeout(wait)?;
-        received(self.port.read(buffer))
+        read_result(self.port.read(buffer))
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        written(self.port.write(bytes))
+        write_result(self.port.write(bytes))
     }
 
     fn drain(&mut self) -> io::Result<()> {
@@ -281,7 +274,7 @@ impl Port for Socket {
         if !cfg!(unix) {
             self.0.set_read_timeout(Some(wait.max(MIN_WAIT)))?;
         }
-        received(self.0.read(buffer))
+        read_result(self.0.read(buffer))
     }
 
     fn wait(&mut self, wait: Duration) -> io::Result<Received> {
@@ -289,13 +282,13 @@ impl Port for Socket {
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        written(self.0.write(bytes))
+        write_result(self.0.write(bytes))
     }
 }
 
 #[cfg(unix)]
 fn is_broken(stream: &TcpStream, wait: Duration) -> io::Result<bool> {
-    poll_for(stream, rustix::event::PollFlags::empty(), wait)
+    Ok(!poll_for(stream, rustix::event::PollFlags::empty(), wait)?.is_empty())
 }
 
 /// The next read shows it.
@@ -430,7 +423,7 @@ pub(crate) use pty::Pty;
 mod pty {
     use super::*;
     use rustix::{
-        event::{PollFd, PollFlags, Timespec, poll},
+        event::PollFlags,
         fs::{OFlags, fcntl_setfl},
         pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
         termios::{OptionalActions, tcgetattr, tcsetattr},
@@ -450,10 +443,10 @@ mod pty {
         };
         let folder = link.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let failed = |error: io::Error| Failure::File(link.to_owned(), error);
-        let place = fs::canonicalize(folder).map_err(failed)?.join(link.file_name().unwrap_or_default());
+        let path = fs::canonicalize(folder).map_err(failed)?.join(link.file_name().unwrap_or_default());
         // Socket names are short, so the path is hashed.
         let mut hasher = DefaultHasher::new();
-        place.hash(&mut hasher);
+        path.hash(&mut hasher);
         let name = format!("stepscope-serve-pty-{:016x}", hasher.finish());
         let address = std::os::unix::net::SocketAddr::from_abstract_name(name).map_err(failed)?;
         UnixListener::bind_addr(&address).map_err(|error| match error.kind() {
@@ -476,6 +469,7 @@ mod pty {
         _claim: Option<std::os::unix::net::UnixListener>,
         baud: u32,
         connected: bool,
+        /// The last rate of the host that was reported, or the line's.
         warned: u32,
     }
 
@@ -521,17 +515,10 @@ mod pty {
             Ok(pty)
         }
 
+        /// Whether there are bytes, and whether the other end is closed.
         fn poll(&self, flags: PollFlags, wait: Duration) -> io::Result<(bool, bool)> {
-            let mut fds = [PollFd::new(&self.master, flags)];
-            let timeout =
-                Timespec { tv_sec: wait.as_secs().cast_signed(), tv_nsec: wait.subsec_nanos().into() };
-            match poll(&mut fds, Some(&timeout)) {
-                Ok(_) => {}
-                Err(rustix::io::Errno::INTR) => return Ok((false, false)),
-                Err(error) => return Err(error.into()),
-            }
-            let [fd] = &fds;
-            Ok((fd.revents().contains(PollFlags::IN), fd.revents().contains(PollFlags::HUP)))
+            let events = poll_for(&self.master, flags, wait)?;
+            Ok((events.contains(PollFlags::IN), events.contains(PollFlags::HUP)))
         }
 
         /// Drops bytes that will get no reply: at most the system's buffer.
@@ -574,10 +561,10 @@ mod pty {
             }
             if has_bytes {
                 return match rustix::io::read(&self.master, buffer) {
-                    Ok(count) => received(Ok(count)),
+                    Ok(count) => read_result(Ok(count)),
                     // The other end was closed meanwhile.
                     Err(rustix::io::Errno::IO) => Ok(Received::Nothing),
-                    Err(error) => received(Err(error.into())),
+                    Err(error) => read_result(Err(error.into())),
                 };
             }
             if is_closed {
@@ -606,21 +593,21 @@ mod pty {
             if !self.connected {
                 return Ok(bytes.len());
             }
-            written(rustix::io::write(&self.master, bytes).map_err(Into::into))
+            write_result(rustix::io::write(&self.master, bytes).map_err(Into::into))
         }
 
         fn poll_events(&mut self) -> Option<String> {
             if !self.connected {
                 return None;
             }
-            let has = tcgetattr(&self.master).ok()?.output_speed();
-            if has == self.warned {
+            let actual = tcgetattr(&self.master).ok()?.output_speed();
+            if actual == self.warned {
                 return None;
             }
-            self.warned = has;
+            self.warned = actual;
             let line = self.baud;
-            (has != line).then(|| {
-                format!("warning: the host set the port to {has} baud, but the line has {line}; a real controller would receive framing errors")
+            (actual != line).then(|| {
+                format!("warning: the host set the port to {actual} baud, but the line has {line}; a real controller would receive framing errors")
             })
         }
 
@@ -635,7 +622,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_reply_to_the_client_before_does_not_reach_the_next_one() {
+    fn replies_to_the_last_client_do_not_reach_the_next() {
         let any = SocketAddr::from(([127, 0, 0, 1], 0));
         let (mut listener, address) = Listener::open(any, false).expect("a port");
         let mut buffer = [0; 8];

@@ -9,7 +9,7 @@ use stepscope_core::sim::{
     raw_host::{NotPaced, RawHost, RawReport},
 };
 
-const WRITE_WITHIN: Duration = Duration::from_secs(2);
+const WRITE_LIMIT: Duration = Duration::from_secs(2);
 
 pub(super) fn host(experiment: &Experiment, lead: u8) -> Result<RawHost, Failure> {
     RawHost::new(experiment, lead).map_err(|why| match why {
@@ -33,7 +33,7 @@ pub(super) fn send(
         }
         let at = watch.nanos();
         if let Some(packet) = host.packet(at)
-            && let Err(error) = wire.write(packet, WRITE_WITHIN)
+            && let Err(error) = wire.write(packet, WRITE_LIMIT)
         {
             lost = Some(error.to_string());
             break;

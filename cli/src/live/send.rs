@@ -1,5 +1,5 @@
-//! `stepscope send`: sends a scenario's ticks to real controllers (LIVE H3), with the same conversation as a
-//! simulated host. Reports a tick as done only if the controller has confirmed it.
+//! `stepscope send`: sends a scenario's ticks to real controllers (LIVE H3), with the protocol logic of a simulated
+//! host. Reports a tick as done only if the controller has confirmed it.
 
 use super::{
     port::{Port, Received, Rs485, Serial, Socket},
@@ -38,11 +38,11 @@ use stepscope_core::{
     },
 };
 
-/// At higher rates RTS drops too late.
+/// Above this rate, RTS would drop too late.
 const MAX_RTS_BAUD: u32 = 9600;
-const WRITE_WITHIN: Duration = Duration::from_secs(2);
+const WRITE_LIMIT: Duration = Duration::from_secs(2);
 const WAIT: Duration = Duration::from_millis(10);
-const ALL: u8 = 255;
+const BROADCAST: u8 = 255;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -169,7 +169,7 @@ impl Sender {
             let now = self.now();
             while self.host.deadline() <= now {
                 if let Some(bytes) = self.host.poll(now) {
-                    wire.write(&bytes, WRITE_WITHIN).map_err(lost)?;
+                    wire.write(&bytes, WRITE_LIMIT).map_err(lost)?;
                     let written = self.now();
                     let takes = line_time(bytes.len() as u64, self.clock_hz, self.baud);
                     // The system does not report when the bytes have been sent, only that it has taken them.
@@ -206,9 +206,9 @@ impl Sender {
                 let now = self.now();
                 self.host.stop(now);
             } else {
-                let mut stop = frame::emit(ALL, Kind::Stop as u8, &[]);
+                let mut stop = frame::emit(BROADCAST, Kind::Stop as u8, &[]);
                 stop.insert(0, frame::DELIMITER);
-                let _ = wire.write(&stop, WRITE_WITHIN);
+                let _ = wire.write(&stop, WRITE_LIMIT);
                 let _ = wire.port.drain();
                 self.interrupts = count;
                 return Err(Failure::Interrupted);

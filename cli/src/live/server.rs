@@ -34,8 +34,7 @@ use stepscope_core::{
 /// Maximum cycles per round, which limits the records.
 const MAX_ROUND: u64 = 1_000_000;
 const IDLE_WAIT: Duration = Duration::from_millis(5);
-/// Interval of [`Port::poll_events`].
-const POLL_TIME: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// With `--pace max`: how long the model waits for the host.
 const RESPONSE_TIME: Duration = Duration::from_millis(10);
 /// Maximum bytes of replies for a host that does not read; the oldest are lost, as on a real line.
@@ -68,9 +67,7 @@ pub(super) struct Server {
     /// The client has disconnected, or standard input has ended, with `once`.
     input_ended: bool,
     recording_is_full: bool,
-    /// When the port was last polled for events.
-    polled: Duration,
-    /// When the last bytes came.
+    last_poll: Duration,
     silent_since: Duration,
     /// Bytes not yet on the line. While it is full nothing is read and the host waits.
     input: Input,
@@ -82,9 +79,8 @@ pub(super) struct Server {
     /// Bytes of replies dropped because the host does not read.
     unread: u64,
     reply_delays: Lateness,
-    /// The last wait for bytes.
-    waited: Duration,
-    /// Maximum delay of the model beyond that wait, since the last status line.
+    last_wait: Duration,
+    /// Maximum delay of the model beyond the last wait, since the last status line.
     max_behind: Duration,
     pub(super) times: SessionTimes,
     pub(super) line: StatusLine,
@@ -107,7 +103,7 @@ impl Server {
             once: settings.once,
             input_ended: false,
             recording_is_full: false,
-            polled: Duration::ZERO,
+            last_poll: Duration::ZERO,
             silent_since: Duration::ZERO,
             input: Input::default(),
             client_is_leaving: false,
@@ -115,7 +111,7 @@ impl Server {
             unsent: VecDeque::new(),
             unread: 0,
             reply_delays: Lateness::default(),
-            waited: Duration::ZERO,
+            last_wait: Duration::ZERO,
             max_behind: Duration::ZERO,
             times: SessionTimes::new(unix_ms(), name, settings.lag, settings.records),
             line: StatusLine::new(settings.progress),
@@ -186,8 +182,8 @@ impl Server {
             self.line.note("the recording has reached its maximum size: the session continues unrecorded");
         }
         let now = self.watch.elapsed();
-        if now.saturating_sub(self.polled) > POLL_TIME {
-            self.polled = now;
+        if now.saturating_sub(self.last_poll) > POLL_INTERVAL {
+            self.last_poll = now;
             if let Some(text) = self.port.poll_events() {
                 self.line.note(&text);
             }
@@ -270,7 +266,7 @@ impl Server {
                 let target = self.clock.target(self.watch.nanos(), now);
                 let behind = self.clock.nanos(Cycles(target.0.saturating_sub(now.0)));
                 self.max_behind =
-                    self.max_behind.max(Duration::from_nanos(behind).saturating_sub(self.waited));
+                    self.max_behind.max(Duration::from_nanos(behind).saturating_sub(self.last_wait));
                 let waits = self.panel.as_ref().and_then(|panel| panel.waits).unwrap_or(Instant::NEVER);
                 let to = target.min(Instant(now.0 + step)).min(waits);
                 self.input.feed(&mut self.session, to + Cycles(ROUNDS_AHEAD * step));
@@ -289,14 +285,14 @@ impl Server {
         if to > now {
             self.session.advance::<Digest>(to, &mut []);
         }
-        self.waited = match (self.pacing, self.deadline()) {
+        self.last_wait = match (self.pacing, self.deadline()) {
             (Pacing::Real(_), due) if due != Instant::NEVER && wait > Duration::ZERO => {
                 let cycles = Cycles(due.0.saturating_sub(self.session.now().0));
                 wait.min(Duration::from_nanos(self.clock.nanos(cycles).max(1)))
             }
             _ => wait,
         };
-        self.waited
+        self.last_wait
     }
 
     fn write_replies(&mut self) -> io::Result<()> {

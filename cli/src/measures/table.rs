@@ -48,7 +48,7 @@ pub(super) fn text(
             write!(out, "  {measure:28} {unit:9}")?;
             values
                 .iter()
-                .try_for_each(|value| write!(out, " {:>18}", value.map_or_else(|| "-".into(), digits)))?;
+                .try_for_each(|value| write!(out, " {:>18}", value.map_or_else(|| "-".into(), six_digits)))?;
             writeln!(out)?;
         }
     }
@@ -92,11 +92,11 @@ fn deviation(found: &Measures) -> Group {
     let columns = [("steps", "ideal to steps"), ("ticks", "steps to pulses"), ("pulses", "ideal to pulses")];
     let title = format!("deviation over {} s", found.length_s);
     let mut group = Group::new("deviation", title, &columns);
-    compared(&mut group, &[&found.steps, &found.ticks, &found.pulses]);
+    add_curve_metrics(&mut group, &[&found.steps, &found.ticks, &found.pulses]);
     group
 }
 
-fn compared(group: &mut Group, pairs: &[&CurveMetrics]) {
+fn add_curve_metrics(group: &mut Group, pairs: &[&CurveMetrics]) {
     let points = pairs.first().map_or(0, |pair| pair.points);
     let rows: [(String, _, Figure<CurveMetrics>); 9] = [
         ("largest".into(), "steps", |pair| Some(pair.largest_steps)),
@@ -181,11 +181,11 @@ fn sine(found: &Measures) -> Option<Group> {
     let mut group = Group::new("sine", "a quarter of the sine by segments", &columns);
     group.row("segments", "", vec![Some(sine.segments as f64)]);
     group.row("Ev in parts of the amplitude", "", vec![Some(sine.euclidean)]);
-    compared(&mut group, &[&sine.quarter]);
+    add_curve_metrics(&mut group, &[&sine.quarter]);
     Some(group)
 }
 
-fn digits(value: f64) -> String {
+fn six_digits(value: f64) -> String {
     if value == value.trunc() && value.abs() < 1e15 {
         // Prints -0 as 0.
         return format!("{}", value + 0.0);

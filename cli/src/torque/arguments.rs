@@ -1,7 +1,7 @@
 //! The arguments of `stepscope torque`.
 
 use crate::{
-    motors::Named,
+    motors::NamedMotor,
     options::{Json, Out},
     quantity::whole,
 };
@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub(super) plant: bool,
     #[command(flatten)]
-    pub(super) named: Named,
+    pub(super) named: NamedMotor,
     #[command(flatten)]
     pub(super) json: Json,
     #[command(flatten)]

@@ -21,7 +21,7 @@ pub(super) fn demands(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<
     if let Some(channel) = arguments.axis.filter(|&channel| channel >= channels.into()) {
         return Err(Failure::index(path, Numbered::AxisChannels, channel, channels.into(), true));
     }
-    let named = arguments.named.named(scenario);
+    let named = arguments.named.applied_to(scenario);
     if Machine::of_channel(&named, 0, 0).is_none() {
         let detail =
             "the scenario has no motor; use --motor, or \"plant\": {} for the motor of Song, Han and Lu 2021";

@@ -34,13 +34,13 @@ pub(crate) fn call<S: AsRef<OsStr>>(folder: &Path, program: &str, arguments: &[S
             .unwrap_or_else(|_| panic!("{program} is not on PATH; `cargo xtask test --only avr` installs it"))
     };
     let log = folder.join(format!("{program}.log"));
-    let said = File::create(&log).expect("a file");
+    let output = File::create(&log).expect("a file");
     let mut child = Command::new(path)
         .args(arguments)
         .current_dir(folder)
         .stdin(Stdio::null())
-        .stdout(said.try_clone().expect("the same file"))
-        .stderr(said)
+        .stdout(output.try_clone().expect("the same file"))
+        .stderr(output)
         .spawn()
         .expect("the program starts");
     let begun = Instant::now();
@@ -54,9 +54,9 @@ pub(crate) fn call<S: AsRef<OsStr>>(folder: &Path, program: &str, arguments: &[S
         }
         thread::sleep(Duration::from_millis(10));
     };
-    let said = String::from_utf8_lossy(&fs::read(&log).expect("what it said")).into_owned();
-    assert!(status.success(), "{program}: {status}\n{said}");
-    said
+    let output = String::from_utf8_lossy(&fs::read(&log).expect("a log")).into_owned();
+    assert!(status.success(), "{program}: {status}\n{output}");
+    output
 }
 
 pub(crate) fn compile(folder: &Path, elf: &str, sources: &[&str]) {
