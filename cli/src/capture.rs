@@ -83,7 +83,7 @@ pub(crate) fn capture(arguments: &Arguments) -> Result<(), Failure> {
         let written = timing::write_violations(outputs.create(path)?, check, *unit);
         written.map_err(|error| Failure::File(path.clone(), error))?;
     }
-    progress.end(format_args!("{} {}", recording.count, recording.what), &outputs.commit()?);
+    progress.end(format_args!("{} {}", recording.count, recording.contents), &outputs.commit()?);
     let demands = torque_demands(arguments, &recording, planned);
     report(arguments, &recording, comparison.as_ref(), &demands, timing.as_ref())?;
     if let Some(error) = error {
@@ -107,7 +107,7 @@ fn timing_in_cycles(
     }
     let new = if recording.is_rounded { TimingCheck::of_rounded } else { TimingCheck::new };
     let mut check = new(rules, recording.clock_hz, max_violations);
-    recording.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
+    recording.unchecked().for_each(|(channel, rule)| check.exclude(channel, rule));
     recording.records.iter().for_each(|record| check.record(*record));
     Some(check)
 }

@@ -84,7 +84,7 @@ pub(crate) fn vcd(
     clock_hz: u32,
     channels: u8,
 ) -> io::Result<Box<dyn Output>> {
-    Ok(Box::new(VcdWriter::with_timescale(out, timescale, clock_hz, channels)?))
+    Ok(Box::new(VcdWriter::with_signals(out, timescale, clock_hz, channels, &[], [])?))
 }
 
 impl Output for VcdWriter<Out> {

@@ -53,7 +53,7 @@ pub(crate) struct NamedMotor {
 impl NamedMotor {
     pub(crate) fn apply_to(&self, scenario: &mut Scenario) {
         let Some(motor) = self.motor else { return };
-        motor.put_into(scenario);
+        motor.apply_to(scenario);
         let motors = scenario.plant.iter_mut().flat_map(|plant| &mut plant.motors);
         motors.for_each(|entry| entry.microsteps = self.microsteps.unwrap_or(entry.microsteps));
     }
@@ -92,10 +92,10 @@ impl MotorReplacement {
         let mut scenario = scenarios::read(path)?;
         check_plant(path, &scenario)?;
         if let Some(motor) = self.motor {
-            motor.put_into(&mut scenario);
+            motor.apply_to(&mut scenario);
         }
         if let Some(drive) = self.motor_driver {
-            drive.put_into(&mut scenario);
+            drive.apply_to(&mut scenario);
         }
         let experiment =
             Experiment::new(&scenario).map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;

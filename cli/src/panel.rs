@@ -129,7 +129,7 @@ pub(crate) fn vcd(
 ) -> io::Result<Box<dyn Output>> {
     let signals = PanelSignals::new(panels);
     let words = signals.signals().iter().map(|signal| (signal.name.as_str(), signal.bits));
-    let mut writer = VcdWriter::with_words(out, timescale, clock_hz, channels, words)?;
+    let mut writer = VcdWriter::with_signals(out, timescale, clock_hz, channels, &[], words)?;
     writer.words(0, signals.signals().iter().map(|signal| signal.value));
     Ok(Box::new(DumpWriter { writer, signals }))
 }

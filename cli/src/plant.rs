@@ -169,7 +169,8 @@ fn open(
     if let Some(path) = &arguments.vcd {
         let (clock_hz, channels) = (experiment.config().clock_hz(), plant.motors() as u8);
         let scale = Timescale::default().of_clock(clock_hz).map_err(Failure::Timescale)?;
-        let writer = VcdWriter::with_analog(outputs.create(path)?, scale, clock_hz, channels, &names(plant));
+        let writer =
+            VcdWriter::with_signals(outputs.create(path)?, scale, clock_hz, channels, &names(plant), []);
         opened.vcd = Some((path.clone(), writer.map_err(|error| Failure::File(path.clone(), error))?));
     }
     Ok(Files(Rc::new(RefCell::new(opened))))

@@ -143,7 +143,7 @@ fn compare_with_plant(
 
 fn curve(axis: &AxisDemand, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "rate_hz,available_mn_m")?;
-    let most = axis.machine.shown_rate(axis.demand.greatest_rate);
+    let most = axis.machine.shown_rate(axis.demand.max_rate);
     axis.machine
         .curve(most, POINTS)
         .try_for_each(|(rate, available)| writeln!(out, "{rate:.3},{available:.6}"))

@@ -192,7 +192,7 @@ $scope module b $end $var wire 1 % D $end $upscope $end $enddefinitions $end
 
 #[test]
 fn names_the_option_for_missing_information() {
-    let rate = "the file has no sample rate; give the sample rate in Hz";
+    let rate = "the file has no sample rate; use its sample rate in Hz";
     check_messages(&[
         (LEVELS, &[], 2, rate),
         (LEVELS, &["--sample-rate", "1000"], 0, ""),
@@ -206,9 +206,9 @@ fn names_the_option_for_missing_information() {
             "0 700000000\n5 700000001\nff 700000000\n",
             &[],
             2,
-            "the file has no clock; give the clock as the sample rate in Hz",
+            "the file has no clock; use its clock as the sample rate in Hz",
         ),
-        ("81 05\n", &[], 2, "the bytes have no times; give the bit rate"),
+        ("81 05\n", &[], 2, "the bytes have no times; use a bit rate"),
         ("81 05\n", &["--baud", "115200"], 0, ""),
         ("81 05\n", &["--baud", "0"], 2, "'0' for '--baud <BAUD>': out of range; use 1 to 1000000000"),
         (
@@ -231,7 +231,7 @@ fn assumes_a_bit_rate_from_byte_times_and_reports_it() {
     ] {
         let (code, out, err) = stepscope(&["capture", "-"], bytes);
         assert_eq!((code, err.as_str()), (Some(0), ""));
-        let expected = format!("{baud} baud is assumed from the times of its bytes; set the right rate\n");
+        let expected = format!("{baud} baud is estimated from the times of its bytes; set the actual rate\n");
         assert!(out.contains(&expected) && out.contains(&format!("\nRX: {baud} baud, ")), "{out}");
         let (_, out, _) = stepscope(&["capture", "-", "--baud", "250000"], bytes);
         assert!(!out.contains("note") && out.contains("\nRX: 250000 baud, "), "{out}");
@@ -322,9 +322,9 @@ fn decodes_the_packets_and_replies_of_a_run() {
     assert_eq!(columns(&out, &["bytes"]), columns(&logged, &["bytes"]));
     let lines = columns(&out, &["kind", "line", "outcome"]);
     assert!(
-        lines.iter().all(|row| {
-            ["reply TX check holds", "frame RX check holds"].contains(&row.join(" ").as_str())
-        }),
+        lines
+            .iter()
+            .all(|row| { ["reply TX CRC valid", "frame RX CRC valid"].contains(&row.join(" ").as_str()) }),
         "{lines:?}"
     );
     let replies = lines.iter().filter(|row| row[0] == "reply").count();

@@ -61,7 +61,7 @@ fn counts_steps_on_both_edges_or_suggests_it() {
     }
     // Pulses that are made have no width to check.
     let out = report(&file, &["--both-edges", "--driver", "tb6600_class", "--strict"]);
-    assert_contains(&out, &["leaves out pulse width and low time", "violations 0"]);
+    assert_contains(&out, &["excludes pulse width and low time", "violations 0"]);
     let scenario = report(&file, &["--both-edges", "--scenario", "-"]);
     let (code, out, err) = stepscope(&["run", "-"], &scenario);
     assert_eq!((code, err.as_str()), (Some(0), ""));

@@ -197,7 +197,7 @@ fn a_klipper_log_without_frequency_requires_a_clock() {
     let (code, out, err) = stepscope(&["capture", "-"], log);
     assert!(code == Some(2) && out.is_empty(), "{out}{err}");
     assert!(
-        err.contains("has no CLOCK_FREQ; give the clock of its controller") && !err.contains("time_us"),
+        err.contains("has no CLOCK_FREQ; use the clock of its controller") && !err.contains("time_us"),
         "{err}"
     );
     let (code, out, err) = stepscope(&["capture", "-", "--sample-rate", "16000000"], log);

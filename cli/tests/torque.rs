@@ -169,7 +169,7 @@ fn rejects_tables_that_fix_no_line() {
         ("length_mm,steps\n1,2\n1,3\n", "all pairs have length 1; add a pair with another length"),
         (
             "length_mm,steps\n1e-200,1\n2e-200,2\n",
-            "pair 1 has length 1e-200 and 1.0 steps; give numbers from 1e-12",
+            "pair 1 has length 1e-200 and 1.0 steps; use numbers from 1e-12",
         ),
         (
             "length_mm,steps\n1,2\n2,x\n",

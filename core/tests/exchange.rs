@@ -86,7 +86,7 @@ fn every_presets_own_table_of_edges_is_the_same_as_its_run() {
         let mut against = TraceDiff::new(config.channels());
         against.feed(&recording.trace, table.as_bytes()).expect(preset.id);
         let outcome = against.finish(&recording.trace).expect(preset.id);
-        assert_eq!((outcome.difference, outcome.goes_on), (None, false), "{}", preset.id);
+        assert_eq!((outcome.difference, outcome.run_continues), (None, false), "{}", preset.id);
         assert_eq!(outcome.same, recording.trace.len() as u64, "{}", preset.id);
     }
 }

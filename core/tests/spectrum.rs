@@ -27,7 +27,7 @@ fn made_distortion(json: &str) -> (f64, i32) {
     let plan = &experiment.plans()[0];
     let window = AnalysisWindow::of(plan).unwrap();
     let config = experiment.config();
-    let own = window.own_pulses(plan, TickClock::new(config.tick().0, config.clock_hz()), &pulses);
+    let own = window.pulses_of_moves(plan, TickClock::new(config.tick().0, config.clock_hz()), &pulses);
     let spectrum = Spectrum::of_pulses(&own, window, 40);
     (spectrum.position.distortion.unwrap() * 100.0, own.iter().map(|(_, way)| i32::from(*way)).sum())
 }

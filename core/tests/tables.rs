@@ -85,7 +85,7 @@ proptest! {
         let plan = plan(moves);
         let due: Vec<ScheduledStep> = plan.due_steps(CLOCK_HZ).collect();
         // The search for the fewest takes the longer the wider the windows are.
-        let narrow = tolerance.cycles.0 << format.fraction_bits < 40;
+        let narrow = tolerance.cycles.0 << format.fraction_bits() < 40;
         let form = if narrow { Form::Compressed(tolerance) } else { Form::Quick(tolerance) };
         let made = stored(&plan, form, format, PULSE, CLOCK_HZ);
         let made = made.unwrap_or_else(|cause| panic!("{cause}"));
@@ -175,7 +175,7 @@ fn walked(table: &Stored) -> Vec<(u64, bool)> {
         for _ in 0..entry.count {
             time += interval;
             interval = interval.wrapping_add_signed(entry.add);
-            made.push((time >> table.format.fraction_bits, right));
+            made.push((time >> table.format.fraction_bits(), right));
         }
     }
     made

@@ -376,7 +376,7 @@ fn frames_and_replies_are_told_in_words_and_the_host_says_how_it_ended() {
         .iter()
         .filter_map(|span| list(span, "texts").first().and_then(JsValue::as_string))
         .collect();
-    for wanted in ["address: 1", "kind: ACK TICKS", "state: MOVING", "end mark: 00"] {
+    for wanted in ["address: 1", "kind: ACK TICKS", "state: MOVING", "delimiter: 00"] {
         assert!(fields.iter().any(|field| field == wanted), "no `{wanted}` in {fields:?}");
     }
     assert!(get(&sure(simulation.decoded(0.0, end, 3, 3)), "more").is_truthy());

@@ -91,7 +91,7 @@ pub(super) fn write(
     })?;
     file(&arguments.vcd, &|out| {
         let (clock_hz, channels) = (recording.clock_hz, recording.channels);
-        let mut writer = VcdWriter::with_timescale(out, arguments.vcd_timescale, clock_hz, channels)?;
+        let mut writer = VcdWriter::with_signals(out, arguments.vcd_timescale, clock_hz, channels, &[], [])?;
         recording.records.iter().for_each(|record| writer.record(*record));
         let end = (recording.end_s * f64::from(clock_hz)).ceil() as u64;
         writer.finish(end.max(recording.records.last().map_or(0, |record| record.cycle.0)))
@@ -130,7 +130,7 @@ fn late(out: &mut Out, comparison: &PlanComparison) -> io::Result<()> {
         for extra in recorded_step..recorded {
             writeln!(out, ",{extra},{},,,extra", comparison.recorded.at_s(extra).unwrap_or(0.0))?;
         }
-        for off in (index..index + count).filter_map(|index| alignment.off(index)) {
+        for off in (index..index + count).filter_map(|index| alignment.deviation(index)) {
             let (step, recorded, other) = (off.step, off.recorded_step, u8::from(off.other_direction));
             let event = if off.other_value { "value" } else { "" };
             writeln!(out, "{step},{recorded},{},{:e},{other},{event}", off.recorded_s, off.late_s)?;

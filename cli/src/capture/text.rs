@@ -20,8 +20,8 @@ pub(super) fn print(
     demands: &[AxisDemand],
 ) -> io::Result<()> {
     let mut out = terminal::out();
-    let LoadedCapture { format, count, what, end_s, .. } = recording;
-    writeln!(out, "file      {format}, {count} {what} in {end_s} s")?;
+    let LoadedCapture { format, count, contents, end_s, .. } = recording;
+    writeln!(out, "file      {format}, {count} {contents} in {end_s} s")?;
     if !recording.names.is_empty() {
         writeln!(out, "channels  {}", recording.names.join(", "))?;
     }
@@ -148,7 +148,7 @@ pub(super) fn tables(
 ) -> Tables {
     let file = json!({
         "format": recording.format,
-        "holds": recording.what,
+        "holds": recording.contents,
         "count": recording.count,
         "end_s": recording.end_s,
         "clock_hz": recording.clock_hz,

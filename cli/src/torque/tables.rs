@@ -7,7 +7,7 @@ use stepscope_core::inspect::motion::torque::{Moment, Ramps};
 
 pub(crate) fn axes(demands: &[AxisDemand]) -> impl Iterator<Item = Value> + '_ {
     demands.iter().map(|AxisDemand { axis, machine, source, demand, agreement }| {
-        let least = demand.least.as_ref();
+        let least = demand.min_margin.as_ref();
         json!({
             "axis": axis,
             "standing_torque_mn_m": machine.available_mn_m(0.0),
@@ -60,7 +60,7 @@ pub(super) fn tables(demands: &[AxisDemand]) -> Tables {
                 "move": index,
                 "steps": planned.profile.steps(),
                 "duration_s": planned.profile.duration_s(),
-                "greatest_rate_steps_s": found.greatest_rate,
+                "greatest_rate_steps_s": found.max_rate,
                 "longest_ramp_s": found.longest_s,
                 "longest_possible_ramp_s": found.room_s,
                 "enough_torque_from_ramp_s": found.enough_s.map(|(shortest, _)| shortest),

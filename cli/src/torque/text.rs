@@ -43,7 +43,7 @@ pub(crate) fn report(axis_demand: &AxisDemand, out: &mut impl Write) -> io::Resu
     if let Some(stated) = machine.working_rate() {
         writeln!(out, "  working rate     {stated:.0} steps/s, as specified")?;
     }
-    if let Some(least) = &demand.least {
+    if let Some(least) = &demand.min_margin {
         let margin = least.margin_mn_m();
         writeln!(out, "  minimum margin   {margin:.1} mN*m: {}", moment(least))?;
     }
@@ -129,13 +129,13 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
 fn ramps(index: usize, planned: &PlannedMove, found: &Ramps, out: &mut impl Write) -> io::Result<()> {
     let (steps, duration_s) = (planned.profile.steps(), planned.profile.duration_s());
     writeln!(out, "  move {index:<11} {} steps in {duration_s} s", steps.unsigned_abs())?;
-    if found.greatest_rate == Some(0.0) {
+    if found.max_rate == Some(0.0) {
         return writeln!(
             out,
             "    the load needs more torque than the motor has at any rate; reduce the load"
         );
     }
-    if let Some(greatest) = found.greatest_rate {
+    if let Some(greatest) = found.max_rate {
         write!(out, "    under {greatest:.0} steps/s  ")?;
         match found.longest_s {
             Some(longest_s) if longest_s > found.room_s => {

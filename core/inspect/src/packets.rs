@@ -1,11 +1,14 @@
-//! ```
-//! use stepscope_inspect::packets::dissector::Reading;
-//! use stepscope_inspect::packets::log::RowOutcome;
-//! use stepscope_peripheral::{config::Protocol, signal::PacketOutcome};
+//! Packets with their fields, outcomes and faults.
 //!
-//! let reading = Reading { protocol: Protocol::Raw, addressed: false, channels: &|_| 2 };
-//! let meaning = reading.of(&[0x85, 0x03], RowOutcome::Packet(PacketOutcome::Queued));
-//! assert_eq!(meaning.fields.len(), 2); // one command per channel
+//! ```
+//! use stepscope_inspect::{packets::packet_table::PacketTable, trace::stored_run::record_run};
+//! use stepscope_sim::Experiment;
+//!
+//! let experiment = Experiment::from_json("{}").expect("it is valid");
+//! let (run, recordings) = record_run(&experiment, 1).expect("it is short");
+//! let table = PacketTable::new(&experiment, &run, 0, &recordings[0].packets);
+//! let row = table.row(0).expect("there are packets");
+//! assert_eq!((row.kind, row.outcome.as_str()), ("packet", "queued"));
 //! ```
 
 pub mod dissector;

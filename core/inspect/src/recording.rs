@@ -1,4 +1,15 @@
 //! Recordings analyzed like runs: figures, bytes, comparison with a plan, and a scenario that reproduces them.
+//!
+//! ```
+//! use stepscope_capture::read::{Limits, read};
+//! use stepscope_inspect::recording::{loaded_capture::LoadedCapture, open_options::OpenOptions};
+//!
+//! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0! #20 1!";
+//! let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
+//! let loaded = LoadedCapture::new(capture, &OpenOptions::default()).expect("a channel map is proposed");
+//! assert_eq!(loaded.map, "STEP0=STEP");
+//! assert_eq!(loaded.report.channels[0].figures.greatest_rate_steps_s, Some(100_000.0));
+//! ```
 
 pub mod alignment;
 pub mod differences;
@@ -19,33 +30,3 @@ pub mod scenario;
 pub mod serial;
 mod side;
 pub mod tolerance;
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn a_recording_is_compared_with_a_plan() {
-        use crate::recording::{
-            alignment::{Alignment, Side},
-            report::Report,
-            tolerance::Tolerance,
-        };
-        use crate::trace::stored_run::Recording;
-        use stepscope_peripheral::trace::steps;
-        use stepscope_sim::Experiment;
-
-        let recorded = |json: &str| {
-            let mut recording = Recording::default();
-            Experiment::from_json(json).expect("no problems").run(&mut recording);
-            recording.trace
-        };
-        // The same move by a controller whose start-up takes longer.
-        let (own, model) = (recorded(r#"{"bus":{"self_test_cycles":4000}}"#), recorded("{}"));
-        assert_eq!(Report::of(&own, 16_000_000, 1, None).channels[0].figures.steps, 3200);
-        let (own, model) = (steps(&own, 0), steps(&model, 0));
-        let side = |steps| Side { steps, clock_hz: 16_000_000, values: &[] };
-        let found = Alignment::of(side(&own), side(&model), None)
-            .expect("both have steps")
-            .comparison(Tolerance::ZERO);
-        assert!(found.is_same(), "{found:?}");
-    }
-}

@@ -1,8 +1,10 @@
+//! Signals over time: edges, views, timing checks, trace diffs and fingerprints.
+//!
 //! ```
 //! use stepscope_inspect::trace::{drivers::A4988, timing::TimingCheck};
 //! use stepscope_sim::Experiment;
 //!
-//! // Can an A4988 follow the default motion?
+//! // Are the pulses of the default motion long enough for an A4988?
 //! let experiment = Experiment::from_json("{}").expect("every field has a default");
 //! let mut check = TimingCheck::new(&A4988.rules, experiment.config().clock_hz(), 100);
 //! experiment.run(&mut check);

@@ -1,13 +1,18 @@
 //! Validation of a scenario before it runs: problems, derived numbers and cost.
+//!
+//! ```
+//! use stepscope_inspect::validation::Validation;
+//! use stepscope_sim::ValidatedScenario;
+//!
+//! let validation = Validation::of(&ValidatedScenario::from_json(r#"{ "bus": { "slots": 0 } }"#));
+//! assert_eq!(validation.problems[0].path, "bus.slots");
+//! ```
 
 pub mod remedies;
 
 use crate::motion::torque::{Demand, Machine};
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
 use serde::Serialize;
 use stepscope_motion::{AxisPlan, PlannedMove, grouped, moves::Axis};
 use stepscope_peripheral::config::Config;
@@ -24,30 +29,35 @@ pub struct Validation {
     pub cost: Option<RunCost>,
 }
 
+/// A problem as text.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProblemText {
     pub path: String,
     pub message: String,
 }
 
+/// Numbers that follow from a valid scenario.
 #[derive(Clone, Debug, Serialize)]
 pub struct Derived {
     pub ticks: u64,
     pub sends: u64,
-    /// Part of the line's time in use while all controllers move.
+    /// Fraction of time in which the line is busy while all controllers move.
     pub line_load: Option<f64>,
     pub duration_s: f64,
     pub controllers: Vec<DerivedController>,
 }
 
+/// Numbers of one controller.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedController {
     pub tick_s: f64,
+    /// Maximum speed that the bus allows.
     pub limit_steps_s: f64,
     pub ticks: u64,
     pub axes: Vec<DerivedAxis>,
 }
 
+/// Numbers of one axis.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedAxis {
     /// From the first to the last position.
@@ -60,6 +70,7 @@ pub struct DerivedAxis {
     pub moves: Vec<DerivedMove>,
 }
 
+/// Numbers of one move.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedMove {
     pub start_s: f64,
@@ -81,6 +92,7 @@ pub struct RunCost {
 }
 
 impl Validation {
+    /// Validates a scenario.
     pub fn of(validated: &ValidatedScenario) -> Self {
         let text = |Problem { path, cause, .. }: &Problem| ProblemText {
             path: path.clone(),
@@ -97,7 +109,7 @@ impl Validation {
     }
 }
 
-/// Of controllers without a serial line; others have theirs next to their moves.
+/// Warnings on controllers without a serial line. Those of other controllers are in [`DerivedMove::warning`].
 fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
     let all = experiment.stand_alone().into_iter().flat_map(|controllers| controllers.warnings());
     all.map(|warned| ProblemText {
@@ -108,6 +120,7 @@ fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
 }
 
 impl RunCost {
+    /// The cost of a run as text.
     pub fn of(cost: Cost) -> Self {
         let message = if cost.motor_steps > BUDGET_MOTOR_STEPS {
             format!(
@@ -183,21 +196,5 @@ impl DerivedAxis {
             step_deg: axis.mechanics.step_deg(),
             moves: plan.moves().iter().map(planned).collect(),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn a_scenario_is_validated() {
-        use crate::validation::Validation;
-        use stepscope_sim::ValidatedScenario;
-
-        let validation = Validation::of(&ValidatedScenario::from_json("{}"));
-        assert_eq!(validation.derived.map(|derived| derived.controllers[0].axes[0].steps), Some(3200));
-
-        let validation = Validation::of(&ValidatedScenario::from_json(r#"{ "bus": { "slots": 0 } }"#));
-        assert_eq!(validation.problems[0].path, "bus.slots");
-        assert!(validation.cost.is_none()); // what does not run costs nothing
     }
 }

@@ -1,4 +1,4 @@
-//! What is kept of a plant's run against every one of its points: min and max of a window, and values at a cycle.
+//! The log of a plant compared with all of its points: minimum and maximum of a window, and values at a cycle.
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use stepscope_inspect::plant::log::{CycleWindow, MOTOR, PlantLog, SUPPLY};
@@ -24,7 +24,7 @@ impl Observer for Points {
     }
 }
 
-/// A run in slices of so many cycles: its log, records, points and length.
+/// A run in slices of `slice` cycles: its log, records, points and length.
 fn logged(json: &str, slice: u64) -> (PlantLog, Recording, Vec<(u64, Vec<f64>)>, u64) {
     let experiment = Experiment::from_json(json).expect("no problem");
     let mut run = experiment.start();
@@ -48,44 +48,51 @@ fn logged(json: &str, slice: u64) -> (PlantLog, Recording, Vec<(u64, Vec<f64>)>,
 const CHOPPING: &str = r#"{"bus":{"channels":2},"plant":{"tail_s":0.02,"buffer_uf":200},"source":{"motion":{"engine":"segments","axes":[
     {"moves":[{"cosine":{"distance":{"steps":200},"duration_s":0.02,"ramp_s":0.005}}],"motor":{"drive":{"regulator":"chopper","decay":"mixed"}}},{}]}}}"#;
 
-/// Least and max of some values.
+/// Minimum and maximum.
 fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 #[test]
-fn a_stretch_has_the_least_and_greatest_of_its_points() {
+fn windows_have_the_minimum_and_maximum_of_their_points() {
     let mut has_bins = false;
     for (json, slice) in [(CHOPPING, 7_001), (CHOPPING, 1 << 40), (r#"{"plant":{}}"#, 50_000)] {
         let (log, recording, points, end) = logged(json, slice);
         let step = points[0].0;
-        let wanted = [2, PlantLog::of_motor(0) + 1, PlantLog::of_motor(0) + 4];
+        let wanted = [2, PlantLog::motor_index(0) + 1, PlantLog::motor_index(0) + 4];
         for (from, to) in
             [(0, end), (end / 3, end / 2), (end / 2, end / 2 + 3000), (end - 500, end), (40, 41)]
         {
             let bands = log.curves(&recording.trace, CycleWindow { from, to, columns: 300 }, &wanted);
             for (band, &value) in bands.iter().zip(&wanted) {
-                assert!(!band.cycle.is_empty() && band.cycle.len() <= 604, "{} places", band.cycle.len());
+                assert!(!band.cycle.is_empty() && band.cycle.len() <= 604, "{} points", band.cycle.len());
                 assert!(band.cycle.windows(2).all(|pair| pair[0] < pair[1]));
-                // All of the window is within what is told, and that within some points more at each end.
-                let around = |slack: u64| {
-                    let range = from.saturating_sub(slack)..=to + slack;
+                // The result covers the window, and at most some points more at each end.
+                let around = |extra: u64| {
+                    let range = from.saturating_sub(extra)..=to + extra;
                     let some = points.iter().filter(move |(cycle, _)| range.contains(cycle));
                     extremes(some.map(|(_, values)| values[value]))
                 };
-                let told = (extremes(band.min.iter().copied()).0, extremes(band.max.iter().copied()).1);
+                let found_range =
+                    (extremes(band.min.iter().copied()).0, extremes(band.max.iter().copied()).1);
                 let (inner, outer) = (around(0), around(64 * step));
-                assert!(told.0 <= inner.0 && told.1 >= inner.1, "{told:?} leaves out some of {inner:?}");
-                assert!(told.0 >= outer.0 && told.1 <= outer.1, "{told:?} is more than {outer:?}");
+                assert!(
+                    found_range.0 <= inner.0 && found_range.1 >= inner.1,
+                    "{found_range:?} misses some of {inner:?}"
+                );
+                assert!(
+                    found_range.0 >= outer.0 && found_range.1 <= outer.1,
+                    "{found_range:?} exceeds {outer:?}"
+                );
                 has_bins |= band.min != band.max;
             }
         }
     }
-    assert!(has_bins, "every window was told point by point");
+    assert!(has_bins, "no window used bins");
 }
 
 #[test]
-fn the_values_at_a_cycle_are_those_of_the_last_point_to_the_bit() {
+fn values_at_a_cycle_equal_the_last_point_bit_for_bit() {
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     for slice in [3_333, 1 << 40] {
         let (log, recording, points, end) = logged(CHOPPING, slice);
@@ -100,11 +107,11 @@ fn the_values_at_a_cycle_are_those_of_the_last_point_to_the_bit() {
 }
 
 #[test]
-fn a_short_stretch_is_told_point_by_point() {
+fn short_windows_list_single_points() {
     let (log, recording, points, _) = logged(r#"{"plant":{}}"#, 20_000);
     let step = points[0].0;
     let (from, to) = (100 * step + 3, 120 * step + 3);
-    let rotor = PlantLog::of_motor(0) + 1;
+    let rotor = PlantLog::motor_index(0) + 1;
     let bands = log.curves(&recording.trace, CycleWindow { from, to, columns: 100 }, &[rotor]);
     // One more at each end.
     let expected: Vec<f64> = (100..=121).map(|point| (point * step) as f64).collect();

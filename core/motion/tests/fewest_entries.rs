@@ -13,9 +13,8 @@ use stepscope_peripheral::{
 
 const PULSE: PulseTimes = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
 /// Narrow numbers, so that each limit matters.
-const NARROW: EntryFormat =
-    EntryFormat { name: "narrow", fraction_bits: 0, interval_bits: 8, count_bits: 8, add_bits: 8 };
-const HALVES: EntryFormat = EntryFormat { name: "halves", fraction_bits: 1, ..NARROW };
+const NARROW: EntryFormat = EntryFormat::new("narrow", 0, [8, 8, 8]).expect("valid widths");
+const HALVES: EntryFormat = EntryFormat::new("halves", 1, [8, 8, 8]).expect("valid widths");
 
 /// The window of each step in units, and its direction.
 fn windows(steps: &[ScheduledStep], tolerance: Tolerance, format: EntryFormat) -> Vec<(i64, i64, bool)> {
@@ -28,7 +27,7 @@ fn windows(steps: &[ScheduledStep], tolerance: Tolerance, format: EntryFormat) -
             let shorter = if early { before } else { before.min(after) };
             let part = tolerance.interval_part.map_or(i64::MAX, |part| shorter / i64::from(part.get()));
             let off = part.min(tolerance.cycles.0 as i64);
-            let unit = 1 << format.fraction_bits;
+            let unit = 1 << format.fraction_bits();
             let low = (cycle(index) - off).max(0) * unit;
             let high = (cycle(index) + if early { 0 } else { off }) * unit + unit - 1;
             (low, high, steps[index].right)
@@ -38,7 +37,7 @@ fn windows(steps: &[ScheduledStep], tolerance: Tolerance, format: EntryFormat) -
 
 /// The fewest entries with steps: tries every interval and add from every time that a step can have.
 fn fewest(windows: &[(i64, i64, bool)], format: EntryFormat) -> u64 {
-    let (min, max) = (2 << format.fraction_bits, format.max_interval() as i64);
+    let (min, max) = (2 << format.fraction_bits(), format.max_interval() as i64);
     let mut reached: Vec<BTreeSet<i64>> = vec![BTreeSet::new(); windows.len() + 1];
     reached[0].insert(0);
     for entries in 0.. {

@@ -1,6 +1,5 @@
 #![doc = include_str!("../datasheet.md")]
 #![no_std]
-#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

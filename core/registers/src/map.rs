@@ -16,7 +16,7 @@ registers! {
     capabilities: "CAPABILITIES" [0x004; 1], Ro, Built => {
         /// Version of the register map.
         VERSION [0..=7] {
-            /// This one.
+            /// The version described here.
             VERSION_1 = 1,
         }
         /// Channels, 1 to 16.
@@ -51,11 +51,11 @@ registers! {
         CYCLES [0..=31] {}
     }
 
-    /// Commands: a one gives the command of its bit. If several are set, only the highest is executed, so STOP
-    /// always is. RESULT reports the outcome. Writing 0 has no effect.
+    /// Commands, one per bit. If several bits are set, only the command of the highest is executed, so STOP
+    /// always has priority. RESULT reports the outcome. Writing 0 has no effect.
     control: "CONTROL" [0x010; 1], Wo, Is(0) => {
-        /// Puts the timing registers into force. Refused with BUSY while a tick runs or waits, with BAD_TIMING if
-        /// the timing is invalid; then nothing changes.
+        /// Applies the timing registers. Refused with BUSY while a tick runs or waits, and with BAD_TIMING if
+        /// the timing is invalid; a refused command changes nothing.
         COMMIT [0..=0] {}
         /// EN = 1; leaves STOPPED.
         ENABLE [1..=1] {}
@@ -77,7 +77,7 @@ registers! {
             CODE_TOO_MANY_STEPS = 3,
             /// PUSH: during the self-test. DISABLE and COMMIT: a tick runs or waits.
             CODE_BUSY = 4,
-            /// PUSH: stopped; ENABLE comes first.
+            /// PUSH: stopped; use ENABLE first.
             CODE_STOPPED = 5,
             /// COMMIT: a value is out of its range, or the pulses do not fit.
             CODE_BAD_TIMING = 8,
@@ -105,7 +105,7 @@ registers! {
         MOVING [24..=24] {}
         /// The level of EN: 1 = windings powered.
         EN [25..=25] {}
-        /// The timing registers differ from the timing in force: COMMIT is needed.
+        /// The timing registers differ from the timing in use: COMMIT is needed.
         PENDING [26..=26] {}
     }
 

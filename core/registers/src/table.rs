@@ -5,11 +5,12 @@
 //!
 //! // A field extracts and inserts its value.
 //! assert_eq!(status::STATE.of(status::STATE.with(status::STATE_MOVING)), status::STATE_MOVING);
-//! // The map as data: registers that can be written.
-//! let written = MAP.iter().filter(|register| register.access != Access::Ro).map(|register| register.name);
-//! assert!(written.into_iter().any(|name| name == "CONTROL"));
+//! // The map as data: the registers that can be written.
+//! let mut writable = MAP.iter().filter(|register| register.access != Access::Ro);
+//! assert!(writable.any(|register| register.name == "CONTROL"));
 //! ```
 
+/// How software can access a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// Read only: writes are ignored.
@@ -35,10 +36,12 @@ impl Access {
     }
 }
 
-/// Value after reset.
+/// A register's value after reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reset {
+    /// The same value in every peripheral.
     Is(u32),
+    /// Set by the configuration that the peripheral was built with.
     Built,
 }
 
@@ -51,17 +54,20 @@ pub struct Register {
     pub offset: u32,
     /// Number of registers, 4 bytes apart.
     pub count: u32,
+    /// What reads and writes do.
     pub access: Access,
+    /// The value after reset.
     pub reset: Reset,
     /// Description in sentences.
     pub meaning: &'static str,
-    /// From bit 0 up; bits of no field are reserved.
+    /// In ascending order of bits; bits outside of all fields are reserved.
     pub fields: &'static [Field],
 }
 
 /// Bits of a register with a common meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
+    /// As in the data sheet, such as `CHANNELS`.
     pub name: &'static str,
     /// Lowest bit, 0 to 31.
     pub low: u32,
@@ -70,28 +76,25 @@ pub struct Field {
     /// Description in sentences.
     pub meaning: &'static str,
     /// Values that have names.
-    pub values: &'static [Named],
+    pub values: &'static [NamedValue],
 }
 
 /// One value of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Named {
+pub struct NamedValue {
     /// Name of its constant, which begins with the field's.
     pub name: &'static str,
+    /// Value of the field, not shifted to the field's bits.
     pub value: u32,
+    /// Description in sentences.
     pub meaning: &'static str,
 }
 
 impl Field {
+    /// A one in every bit of the field.
     #[must_use]
     pub const fn mask(&self) -> u32 {
         u32::MAX >> (31 - (self.high - self.low)) << self.low
-    }
-
-    /// Position of its lowest bit.
-    #[must_use]
-    pub const fn shift(&self) -> u32 {
-        self.low
     }
 
     /// The field's value in the register value `register`.
@@ -114,6 +117,7 @@ impl Field {
 }
 
 impl Register {
+    /// Offset in bytes of the first address after the register or array.
     #[must_use]
     pub const fn end(&self) -> u32 {
         self.offset + 4 * self.count
@@ -136,8 +140,10 @@ macro_rules! registers {
         $(
             $(#[doc = $meaning])*
             pub mod $module {
+                /// Offset in bytes from the peripheral's base.
                 pub const OFFSET: u32 = $offset;
 
+                /// The register with its fields, as data.
                 pub const REGISTER: $crate::table::Register = $crate::table::Register {
                     name: $name,
                     offset: $offset,
@@ -155,7 +161,7 @@ macro_rules! registers {
                         low: $low,
                         high: $high,
                         meaning: concat!($($field_meaning),*),
-                        values: &[$($crate::table::Named {
+                        values: &[$($crate::table::NamedValue {
                             name: stringify!($value),
                             value: $number,
                             meaning: concat!($($value_meaning),*),
@@ -169,6 +175,7 @@ macro_rules! registers {
             }
         )*
 
+        /// All registers in ascending order of offsets.
         pub const MAP: &[crate::table::Register] = &[$($module::REGISTER),*];
     };
 }

@@ -29,7 +29,7 @@ fn reset(register: &Register) -> String {
     }
 }
 
-/// Doc comments come with the blank after their slashes.
+/// Doc comments start with the space after their slashes.
 fn text(meaning: &str) -> &str {
     meaning.trim()
 }
@@ -87,21 +87,21 @@ fn registers() -> String {
     out
 }
 
-/// The sheet with `tables` between its marks.
+/// The data sheet with `tables` between its markers.
 fn with_tables(sheet: &str, tables: &[(&str, String)]) -> String {
     let mut out = sheet.to_owned();
-    for (mark, table) in tables {
-        let begin = format!("<!-- {mark}: from the register table -->\n");
-        let end = format!("<!-- end of {mark} -->");
-        let (before, rest) = out.split_once(&begin).expect("the sheet has the mark");
-        let (_, after) = rest.split_once(&end).expect("the sheet has the end mark");
+    for (name, table) in tables {
+        let begin = format!("<!-- {name}: from the register table -->\n");
+        let end = format!("<!-- end of {name} -->");
+        let (before, rest) = out.split_once(&begin).expect("the sheet has the begin marker");
+        let (_, after) = rest.split_once(&end).expect("the sheet has the end marker");
         out = format!("{before}{begin}\n{}\n\n{end}{after}", table.trim_end());
     }
     out
 }
 
 #[test]
-fn the_data_sheets_tables_are_those_of_the_register_table() {
+fn data_sheet_tables_match_the_register_table() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasheet.md");
     let found = fs::read_to_string(&path).expect("the data sheet is there").replace("\r\n", "\n");
     let expected = with_tables(&found, &[("map", map()), ("registers", registers())]);
@@ -115,7 +115,7 @@ fn the_data_sheets_tables_are_those_of_the_register_table() {
 }
 
 #[test]
-fn registers_stand_one_after_another_and_their_fields_too() {
+fn registers_and_fields_are_in_order_and_do_not_overlap() {
     let mut free = 0;
     for register in MAP {
         assert!(register.offset.is_multiple_of(4) && register.offset >= free, "{}", register.name);
@@ -135,13 +135,13 @@ fn registers_stand_one_after_another_and_their_fields_too() {
 }
 
 #[test]
-fn fields_are_taken_out_and_put_in_at_their_bits() {
+fn fields_extract_and_insert_their_bits() {
     let field = |low, high| Field { name: "F", low, high, meaning: "", values: &[] };
     let rows =
         [(0, 0, 1, 1), (0, 31, u32::MAX, 0xdead_beef), (8, 12, 0x1f00, 0x1e), (31, 31, 0x8000_0000, 1)];
     for (low, high, mask, value) in rows {
         let field = field(low, high);
-        assert_eq!((field.mask(), field.shift()), (mask, low));
+        assert_eq!(field.mask(), mask);
         assert_eq!(field.of(field.with(value) | !mask), value);
         assert_eq!(field.with(u32::MAX), mask);
         assert!(field.is_set(mask) && !field.is_set(!mask));

@@ -28,7 +28,7 @@ use stepscope_core::{
             alignment::{Alignment, Side},
             loaded_capture::{LoadedCapture, Part},
             open_options::OpenOptions,
-            scenario::{Reproduction, Steps, of_step_times, of_steps},
+            scenario::{Reproduction, StepRequest, of_step_times, of_steps},
             tolerance::Tolerance,
         },
     },
@@ -368,7 +368,7 @@ fn run(experiment: &Experiment) -> Option<Vec<Record>> {
 /// The scenario of steps gives each step in its cycle again.
 fn again(opened: &LoadedCapture) {
     let (clock_hz, channels) = (opened.clock_hz, opened.channels);
-    let asked = Steps { clock_hz, channels, within_cycles: 0 };
+    let asked = StepRequest { clock_hz, channels, within_cycles: 0 };
     let made = if opened.has_levels() {
         of_steps(&opened.records, &asked)
     } else {

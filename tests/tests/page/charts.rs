@@ -178,7 +178,7 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
         let scaled =
             |steps| Scaled { steps, hz: f64::from(baseline.experiment.config().clock_hz()), unit: 1.0 };
         let common_s = baseline.seconds(cycles(&later).min(cycles(&baseline)));
-        let apart = position_error::apart(scaled(&own), scaled(&other), common_s);
+        let apart = position_error::compare(scaled(&own), scaled(&other), common_s);
         let told = page.text("#compared").await?.replace('\u{2212}', "-");
         ensure!(
             told.contains(&format!("maximum difference {} steps", apart.largest)),

@@ -62,7 +62,7 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
         let log = &known.recording.packets;
         // The second packet's first byte was sent as 83 and heard as 87.
         assert_eq!(log.bytes(1), [0x87, 0x05]);
-        let seen = log.seen(1);
+        let seen = log.start_bits(1);
         let middle = |byte: usize| seen[byte].0 + 5 * known.experiment.config().bit().0;
         point(&page, &known, BYTES, middle(0), false).await?;
         until_reads(&page, "bytes: 87, sent as 83").await?;
@@ -75,12 +75,12 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
         point(&page, &known, FIELDS, middle(1), false).await?;
         until_reads(&page, "fields: ch1: \u{2212}5").await?;
 
-        let broken = log.broken()[0].0 + 5 * known.experiment.config().bit().0;
+        let broken = log.framing_errors()[0].0 + 5 * known.experiment.config().bit().0;
         point(&page, &known, BYTES, broken, false).await?;
         until_reads(&page, "framing error: stop bit low").await?;
         let ignored =
             log.rows().iter().position(|row| row.outcome == RowOutcome::Ignored).context("some are")?;
-        point(&page, &known, FIELDS, log.seen(ignored)[0].0 + 100, false).await?;
+        point(&page, &known, FIELDS, log.start_bits(ignored)[0].0 + 100, false).await?;
         until_reads(&page, "ignored: until a gap").await?;
 
         point(&page, &known, BYTES, middle(1), true).await?;

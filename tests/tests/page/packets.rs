@@ -4,7 +4,7 @@ use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::inspect::packets::log::RowOutcome;
 use stepscope_core::{
-    inspect::packets::dissector::{Meaning, Reading},
+    inspect::packets::dissector::{Dissection, Dissector},
     peripheral::{config::Protocol, protocol::FrameOutcome},
     scenario::presets::PRESETS,
 };
@@ -27,16 +27,20 @@ async fn open(page: &Session, known: &Known) -> Result<()> {
     page.js::<bool>("return document.getElementById('packet-inspector').open = true;", vec![]).await.map(drop)
 }
 
-/// The core's reading of a row.
-fn meaning(known: &Known, index: usize) -> Meaning {
+/// The core's dissection of a row.
+fn meaning(known: &Known, index: usize) -> Dissection {
     let config = known.experiment.config();
     let channels = |address| {
         let named = known.experiment.configs().find(|config| config.address() == Some(address));
         named.unwrap_or(config).channels()
     };
     let log = &known.recording.packets;
-    Reading { protocol: config.protocol(), addressed: config.packet_address().is_some(), channels: &channels }
-        .of(log.bytes(index), log.rows()[index].outcome)
+    Dissector {
+        protocol: config.protocol(),
+        addressed: config.packet_address().is_some(),
+        channels: &channels,
+    }
+    .dissect(log.bytes(index), log.rows()[index].outcome)
 }
 
 /// Types into the search, in place of what stands there.
@@ -194,7 +198,7 @@ fn a_field_lights_its_bytes_and_its_place_on_the_wave_and_the_wave_lights_the_by
         page.click("#packet-2 td").await?;
         page.until("document.getElementById('packet-detail').textContent.startsWith('#2 ')").await?;
         let fields = meaning(&known, 2).fields;
-        let check = fields.iter().position(|field| field.name == "check").context("a check")?;
+        let check = fields.iter().position(|field| field.name == "CRC").context("a CRC")?;
         page.press("#packet-fields", "\u{e010}\u{e012}").await?;
         let bytes: Vec<usize> = fields[check].bytes.clone().collect();
         page.until_equal(LIT, &json!(bytes)).await?;

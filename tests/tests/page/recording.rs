@@ -269,7 +269,7 @@ fn a_recording_is_aligned_by_the_step_that_is_chosen_and_by_none_that_one_of_bot
         .await?;
         for (step, why) in [
             ("900", "The experiment has no step 900 (the first is 0); align by one that both have"),
-            ("250", "There is no step 250; 200 steps were recorded, from 0: align by one that both have"),
+            ("250", "There is no step 250; 200 steps were recorded, numbered from 0; use one that both have"),
         ] {
             type_into(&page, "Aligned by step", step).await?;
             page.until(READY).await?;
@@ -516,7 +516,7 @@ fn the_packets_of_both_lines_are_listed_with_the_replies_that_were_recorded() ->
             let bytes: Vec<String> = log.bytes(index).iter().map(|byte| format!("{byte:02x}")).collect();
             assert_eq!((row[0].as_str(), row[2].as_str()), (line, bytes.join(" ").as_str()), "{rows:?}");
         }
-        ensure!(rows[1][3].starts_with("from 0: ") && rows[1][3].ends_with("check holds"), "{rows:?}");
+        ensure!(rows[1][3].starts_with("from 0: ") && rows[1][3].ends_with("CRC valid"), "{rows:?}");
         let mut wrong = Vec::new();
         axe::look(&page, "light", &mut wrong).await?;
         axe::none(&wrong)?;

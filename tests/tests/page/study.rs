@@ -446,7 +446,7 @@ fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<(
             }
             let torque = cost.torque.context("there is a motor")?;
             ensure!(shown[4].starts_with('✕') != torque.is_met, "{shown:?}");
-            let least = torque.least.context("a move takes time")?;
+            let least = torque.min_margin.context("a move takes time")?;
             if least.available_mn_m > 0.0 {
                 let part = value(shown[4].trim_start_matches("✕ "))?;
                 let wanted = least.needed_mn_m.abs() / least.available_mn_m;

@@ -130,7 +130,7 @@ fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants(
             let of = |name: &str| facts.iter().find(|row| row[0] == name).map(|row| row[1].clone());
             anyhow::Ok((of("Minimum margin"), of("Maximum jump of speed")))
         };
-        let least = demand.least.expect("it moves").margin_mn_m();
+        let least = demand.min_margin.expect("it moves").margin_mn_m();
         let expected = (Some(least), demand.jump);
         let (margin, jump) = shown().await?;
         let margin =

@@ -20,7 +20,7 @@ use stepscope_core::{
             open_options::{OpenError, OpenOptions},
             packets::{LinePacket, Packets},
             remedy::{Note, Remedy},
-            replies::{self, Dealt},
+            replies::{self, EncodedReplies},
             report::{ChannelReport, LineReport},
             tolerance::Tolerance,
         },
@@ -380,7 +380,7 @@ impl CaptureFile {
         object(&PacketPage { total: packets.rows.len(), replies: packets.replies(), rows, csv })
     }
 
-    /// Replies on TX in the visible part, by the addresses of controllers ([`replies::Dealt`]): `{bytes, unknown}`. `None`
+    /// Replies on TX in the visible part, by the addresses of controllers ([`replies::EncodedReplies`]): `{bytes, unknown}`. `None`
     /// without TX.
     #[must_use]
     pub fn replies(&self, addresses: &[u8]) -> Option<Object> {
@@ -391,7 +391,8 @@ impl CaptureFile {
         }
         let cycle = |at_s: f64| (at_s * f64::from(loaded.clock_hz)) as u64;
         let shown = loaded.part.map_or(0..u64::MAX, |part| cycle(part.from_s)..cycle(part.to_s));
-        let Dealt { bytes, unknown } = replies::to_bytes(&loaded.report, loaded.clock_hz, shown, addresses);
+        let EncodedReplies { bytes, unknown } =
+            replies::encode(&loaded.report, loaded.clock_hz, shown, addresses);
         let dealt = Object::new();
         field(&dealt, "bytes", &Uint8Array::from(bytes.as_slice()).into());
         field(&dealt, "unknown", &unknown.into());

@@ -57,7 +57,7 @@ impl Shown {
                 acceleration_jump: cost.peaks.acceleration_jump,
                 time_error_s: cost.time_error_s,
                 last_step_s: cost.last_step_s,
-                torque: cost.torque.map(|found| Torque { is_met: found.is_met, least: found.least }),
+                torque: cost.torque.map(|found| Torque { is_met: found.is_met, least: found.min_margin }),
             },
         }
     }
@@ -84,7 +84,7 @@ impl ValidatedScenario {
         for row in compare(&request) {
             let shown: Object = object(&Shown::of(&row))?.into();
             let wanted =
-                JSON::parse(&to_json(&row.wanted)).map_err(|_| JsError::new("a move is not JSON"))?;
+                JSON::parse(&to_json(&row.requested_move)).map_err(|_| JsError::new("a move is not JSON"))?;
             field(&shown, "move", &wanted);
             let sampled = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
                 let time = |index| request.duration_s * f64::from(index) / f64::from(points.max(2) - 1);

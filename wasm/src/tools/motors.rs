@@ -61,10 +61,10 @@ pub fn with_motor(json: &str, motor: &str, drive: &str) -> String {
     let (mut scenario, _) = Scenario::from_json_lenient(json);
     scenario.plant.get_or_insert_default();
     if let Some(sheet) = stepscope_core::inspect::plant::motors::motor(motor) {
-        sheet.put_into(&mut scenario);
+        sheet.apply_to(&mut scenario);
     }
     if let Some(sheet) = stepscope_core::inspect::plant::motors::drive(drive) {
-        sheet.put_into(&mut scenario);
+        sheet.apply_to(&mut scenario);
     }
     to_json(&scenario)
 }

@@ -74,7 +74,7 @@ impl TraceFile {
             same: outcome.same,
             start_cycle: outcome.range.0.0,
             end_cycle: outcome.range.1.0,
-            goes_on: outcome.goes_on,
+            goes_on: outcome.run_continues,
             difference: outcome.difference.map(|difference| Differs {
                 line: difference.line,
                 cycle: difference.cycle.0,

@@ -64,7 +64,7 @@ impl Simulation {
     pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
         let window = window(t0_s, t1_s, columns);
         let result = Object::new();
-        let centers: Vec<f64> = (0..window.columns).map(|column| window.centre_s(column)).collect();
+        let centers: Vec<f64> = (0..window.columns).map(|column| window.center_s(column)).collect();
         numbers(&result, "x", &centers);
         let plan = self.plan(axis);
         let plan_is_none = plan.is_none();
@@ -180,7 +180,8 @@ impl Simulation {
     ) -> Result<JsValue, JsError> {
         let common_s = self.end_s().min(other.end_s());
         let (first, second) = (self.scaled(axis, units.first()), other.scaled(other_axis, units.get(1)));
-        let position_error::Apart { largest, at_s, rms } = position_error::apart(first, second, common_s);
+        let position_error::PositionError { largest, at_s, rms } =
+            position_error::compare(first, second, common_s);
         object(&Deviation { common_s, largest, at_s, rms })
     }
 }

@@ -58,7 +58,7 @@ impl Simulation {
         channel: usize,
     ) -> Option<(&PlantLog, Vec<usize>, impl Iterator<Item = &'static str>)> {
         let log = self.selected().plant.as_ref()?;
-        let first = PlantLog::of_motor(channel);
+        let first = PlantLog::motor_index(channel);
         let has_motor = self.run.plant(self.selected).is_some_and(|plant| channel < plant.motors());
         let values = (0..SUPPLY.len()).chain(first..first + MOTOR.len()).collect();
         has_motor.then(|| (log, values, SUPPLY.into_iter().chain(MOTOR)))

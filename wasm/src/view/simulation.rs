@@ -47,7 +47,7 @@ pub struct Simulation {
     /// Number of used records.
     processed: usize,
     pub(crate) panels: PanelLog,
-    /// Recorded replies for [`replies::put`]; empty once they are used.
+    /// Recorded replies for [`replies::replace`]; empty once they are used.
     pub(crate) replies: Option<Vec<u8>>,
     is_simulated: bool,
 }
@@ -175,7 +175,7 @@ impl Simulation {
         recorded.extend(records(bytes));
     }
 
-    /// Sets recorded replies ([`replies::put`]) to show instead of those of the run.
+    /// Sets recorded replies ([`replies::replace`]) to show instead of those of the run.
     pub fn set_replies(&mut self, bytes: Vec<u8>) {
         self.replies = Some(bytes);
     }
@@ -238,7 +238,7 @@ impl Simulation {
             let packets = &mut one.recording.packets;
             packets.finish();
             if let Some(bytes) = &recorded {
-                replies::put(bytes, &self.experiment, &self.run, index, packets);
+                replies::replace(bytes, &self.experiment, &self.run, index, packets);
             }
         }
     }

@@ -113,7 +113,7 @@ export function createPacketDetails({ dispatch, now }, bytes, fields) {
             id: `field-${index}`,
             "aria-selected": "false",
             title: until - from > 1 ? `bytes ${range}` : `byte ${range}`,
-            class: name === "check" && row.check === "fails" ? "bad" : "",
+            class: name === "CRC" && row.check === "fails" ? "bad" : "",
           },
           element("b", {}, name),
           " ",

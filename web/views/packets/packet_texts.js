@@ -28,7 +28,7 @@ export function rangeText(row, first, last, clock) {
 /** The facts of a row: times, size and CRC. @param {PacketDetail} row @param {(cycles: number) => string} timeOf @returns {Fact[]} */
 export function factsOf(row, timeOf) {
   const { check, check_found: found, check_expected: expected } = row;
-  const framing = row.layout.filter(({ name }) => ["COBS", "delimiter", "end mark"].includes(name)).length;
+  const framing = row.layout.filter(({ name }) => ["COBS", "delimiter"].includes(name)).length;
   const size = row.byte_cycles.length;
   /** @type {Fact} */
   const checkFact =

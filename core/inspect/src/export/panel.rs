@@ -2,17 +2,15 @@
 
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::{self, Write};
-use stepscope_controller::{
-    CheckedSetup, State,
-    input::Signal,
-    panel::{PanelRecord, Word},
-    trust_name,
-};
+use stepscope_controller::panel::{PanelRecord, Word};
+use stepscope_controller::{CheckedSetup, State, input::Signal, trust_name};
 use stepscope_peripheral::signal::Event;
 
+/// The CSV header of [`write_panel_row`].
 pub const PANEL_HEAD: &str =
     "controller,cycle,time_s,word,position,display,state,alarm,trust,outputs,group,loop\n";
 
+/// Writes a panel of controller `index` as a CSV row, with the time in s.
 pub fn write_panel_row(
     out: &mut impl Write,
     index: usize,
@@ -27,7 +25,7 @@ pub fn write_panel_row(
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum What {
+enum PanelValue {
     State,
     Alarm,
     Trust,
@@ -37,13 +35,14 @@ enum What {
     Input(Signal),
 }
 
-const SHOWN: [(What, &str, u32); 6] = [
-    (What::State, "state", 4),
-    (What::Alarm, "alarm", 4),
-    (What::Trust, "trust", 2),
-    (What::Outputs, "outputs", 4),
-    (What::Group, "group", 9),
-    (What::Loop, "loop", 16),
+/// Values of a panel, with their names and widths in bits.
+const SHOWN: [(PanelValue, &str, u32); 6] = [
+    (PanelValue::State, "state", 4),
+    (PanelValue::Alarm, "alarm", 4),
+    (PanelValue::Trust, "trust", 2),
+    (PanelValue::Outputs, "outputs", 4),
+    (PanelValue::Group, "group", 9),
+    (PanelValue::Loop, "loop", 16),
 ];
 
 /// The signals of all panels, and the raw levels of the inputs in use.
@@ -52,61 +51,72 @@ pub struct PanelSignals {
     signals: Vec<PanelSignal>,
 }
 
+/// One signal of a dump with its current value.
 #[derive(Clone, Debug)]
 pub struct PanelSignal {
     controller: u8,
-    what: What,
+    source: PanelValue,
     pub name: String,
+    /// Width, 1 to 16.
     pub bits: u32,
     pub value: u64,
 }
 
 impl PanelSignals {
+    /// The signals of every controller, with their values after reset.
     pub fn new(checked: &CheckedSetup) -> Self {
         let mut signals = Vec::new();
         for (index, parameters) in checked.controllers().iter().enumerate() {
             let controller = index as u8;
-            for (what, name, bits) in SHOWN {
-                let value = if what == What::State { State::SelfTest as u64 } else { 0 };
-                signals.push(PanelSignal { controller, what, name: format!("{name}{index}"), bits, value });
+            for (source, name, bits) in SHOWN {
+                let value = if source == PanelValue::State { State::SelfTest as u64 } else { 0 };
+                signals.push(PanelSignal { controller, source, name: format!("{name}{index}"), bits, value });
             }
             for signal in parameters.inputs_used() {
                 let name = format!("{}_{index}", signal.name());
                 let value = u64::from(signal == Signal::Power);
-                signals.push(PanelSignal { controller, what: What::Input(signal), name, bits: 1, value });
+                signals.push(PanelSignal {
+                    controller,
+                    source: PanelValue::Input(signal),
+                    name,
+                    bits: 1,
+                    value,
+                });
             }
         }
         Self { signals }
     }
 
+    /// In the order of controllers.
     pub fn signals(&self) -> &[PanelSignal] {
         &self.signals
     }
 
+    /// Applies an event; returns whether it was a panel or an input.
     pub fn take(&mut self, event: Event) -> bool {
         match event {
             Event::Panel { controller, word, .. } => {
                 let word = Word(word);
                 for signal in self.signals.iter_mut().filter(|signal| signal.controller == controller) {
-                    signal.value = match signal.what {
-                        What::State => word.state() as u64,
-                        What::Alarm => word.alarm() as u64,
-                        What::Trust => word.trust().into(),
-                        What::Outputs => word.outputs().into(),
-                        What::Group => word.group().into(),
-                        What::Loop => word.loop_().into(),
-                        What::Input(_) => continue,
+                    signal.value = match signal.source {
+                        PanelValue::State => word.state() as u64,
+                        PanelValue::Alarm => word.alarm() as u64,
+                        PanelValue::Trust => word.trust().into(),
+                        PanelValue::Outputs => word.outputs().into(),
+                        PanelValue::Group => word.group().into(),
+                        PanelValue::Loop => word.loop_().into(),
+                        PanelValue::Input(_) => continue,
                     };
                 }
                 true
             }
             Event::Input { controller, input, level } => {
                 let mut signals = self.signals.iter_mut();
-                let is_it = |signal: &&mut PanelSignal| {
+                let is_input = |signal: &&mut PanelSignal| {
                     signal.controller == controller
-                        && matches!(signal.what, What::Input(own) if own as u8 == input)
+                        && matches!(signal.source, PanelValue::Input(own) if own as u8 == input)
                 };
-                if let Some(signal) = signals.find(is_it) {
+                if let Some(signal) = signals.find(is_input) {
                     signal.value = level.into();
                 }
                 true
@@ -120,10 +130,10 @@ impl PanelSignal {
     /// The level as text: states, alarms and trust by name.
     pub fn text(&self) -> String {
         let word = |shift: u32| Word(self.value << shift);
-        match self.what {
-            What::State => word(0).state().name().into(),
-            What::Alarm => word(4).alarm().name().into(),
-            What::Trust => trust_name(word(8).trust()).into(),
+        match self.source {
+            PanelValue::State => word(0).state().name().into(),
+            PanelValue::Alarm => word(4).alarm().name().into(),
+            PanelValue::Trust => trust_name(word(8).trust()).into(),
             _ => format!("{}", self.value),
         }
     }
@@ -132,7 +142,7 @@ impl PanelSignal {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn a_panel_is_a_row_of_each_record() {
+    fn a_panel_record_is_one_csv_row() {
         use crate::export::panel::write_panel_row;
         use stepscope_controller::panel::{PanelRecord, Word};
         use stepscope_peripheral::units::Instant;

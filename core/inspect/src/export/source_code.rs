@@ -9,30 +9,36 @@ use core::fmt::{self, Write};
 use stepscope_motion::round_half_up;
 use stepscope_motion::step_tables::{Entry, EntryFormat, Stored};
 
-const IN_A_LINE: usize = 8;
+/// Numbers per line of an array.
+const NUMBERS_PER_LINE: usize = 8;
 /// Maximum bytes of an array. avr-gcc has signed 16-bit sizes, and C99 requires no more.
 const MAX_AVR_BYTES: u64 = 32_767;
 const MAX_C_BYTES: u64 = 65_535;
 /// Bytes of program memory that an AVR reads by near pointers.
 const NEAR_BYTES: u64 = 65_536;
 /// Prefixes that C reserves for functions of its headers (C11 7.31), if a lowercase letter follows.
-const FUNCTIONS: [&str; 6] = ["is", "to", "str", "mem", "wcs", "e"];
-/// Prefixes that C reserves for types and uppercase macros; `e` and a digit is one of `errno.h`.
-const OTHERS: [&str; 13] =
+const RESERVED_FUNCTIONS: [&str; 6] = ["is", "to", "str", "mem", "wcs", "e"];
+/// Prefixes that C reserves for types and uppercase macros; ``e` followed by a digit is reserved by `errno.h`.
+const RESERVED_TYPES: [&str; 13] =
     ["int", "uint", "sig", "lc_", "fe_", "pri", "scn", "atomic_", "memory_", "cnd_", "mtx_", "thrd_", "tss_"];
 
+/// The language of an exported step table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
     C,
+    /// C with arrays in program memory (avr-gcc).
     Avr,
     Rust,
+    /// One row per entry.
     Csv,
 }
 
+/// A step table to write as source code.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'s> {
-    /// See [`is_name`].
+    /// Prefix of all identifiers; must be valid for [`is_name`].
     pub name: &'s str,
+    /// First line of the comment; unsafe characters become spaces.
     pub title: &'s str,
     pub clock_hz: u32,
     pub table: &'s Stored,
@@ -53,17 +59,19 @@ fn is_reserved(name: &str) -> bool {
     let follows = |start: &str, fits: fn(char) -> bool| {
         name.strip_prefix(start).is_some_and(|rest| rest.starts_with(fits))
     };
-    FUNCTIONS.iter().any(|start| follows(start, |c| c.is_ascii_lowercase()))
+    RESERVED_FUNCTIONS.iter().any(|start| follows(start, |c| c.is_ascii_lowercase()))
         || follows("e", |c| c.is_ascii_digit())
-        || OTHERS.iter().any(|start| name.starts_with(start))
+        || RESERVED_TYPES.iter().any(|start| name.starts_with(start))
 }
 
+/// The title of a table: the scenario's title, the axis and the form.
 pub fn headline(title: &str, axis: usize, form: &str) -> String {
     let separator = if title.is_empty() { "" } else { ": " };
     format!("{title}{separator}axis {axis}, {form} step table")
 }
 
 impl Source<'_> {
+    /// Writes the table as a complete file.
     pub fn write(&self, language: Language, out: &mut impl Write) -> fmt::Result {
         match language {
             Language::C => self.c(out, false),
@@ -73,20 +81,20 @@ impl Source<'_> {
         }
     }
 
-    fn head(&self, out: &mut impl Write, mark: &str) -> fmt::Result {
+    fn comment(&self, out: &mut impl Write, prefix: &str) -> fmt::Result {
         let format = self.table.format;
         let error = self.table.error;
         // Keeps the text from ending the comment, continuing the line, or reordering it.
         let plain = |c: char| {
             if is_unsafe(c) || matches!(c, '*' | '\\') { ' ' } else { c }
         };
-        write!(out, "{mark}")?;
+        write!(out, "{prefix}")?;
         self.title.chars().take(200).map(plain).try_for_each(|c| out.write_char(c))?;
         let nanos = |cycles: f64| round_half_up(cycles * 1e9 / f64::from(self.clock_hz.max(1)));
-        writeln!(out, "\n{}", mark.trim_end())?;
+        writeln!(out, "\n{}", prefix.trim_end())?;
         writeln!(
             out,
-            "{mark}{} steps in {} entries of {} bytes ({}), {} bytes in all.",
+            "{prefix}{} steps in {} entries of {} bytes ({}): {} bytes in total.",
             error.steps,
             self.table.entries.len(),
             format.bytes(),
@@ -95,74 +103,74 @@ impl Source<'_> {
         )?;
         writeln!(
             out,
-            "{mark}Largest timing error {} cycles ({} ns), r.m.s. {:.2} cycles ({} ns).",
+            "{prefix}Largest timing error {} cycles ({} ns), RMS {:.2} cycles ({} ns).",
             error.max_cycles,
             nanos(error.max_cycles as f64),
             error.rms(),
             nanos(error.rms())
         )?;
-        writeln!(out, "{}", mark.trim_end())?;
+        writeln!(out, "{}", prefix.trim_end())?;
         writeln!(
             out,
-            "{mark}Clock: {} Hz. Unit of interval and add: 1/{} cycle.",
+            "{prefix}Clock: {} Hz. Unit of interval and add: 1/{} cycle.",
             self.clock_hz,
-            1_u32 << format.fraction_bits
+            1_u32 << format.fraction_bits()
         )?;
-        writeln!(out, "{mark}To walk it, begin with time = 0 and DIR = 0, and for each entry")?;
-        writeln!(out, "{mark}  with count > 0, count times:")?;
+        writeln!(out, "{prefix}To use the table, start with time = 0 and DIR = 0. For each entry")?;
+        writeln!(out, "{prefix}  with count > 0, repeat count times:")?;
         writeln!(
             out,
-            "{mark}    time += interval; make a step at cycle time >> {}; interval += add",
-            format.fraction_bits
+            "{prefix}    time += interval; make a step at cycle time >> {}; interval += add",
+            format.fraction_bits()
         )?;
-        writeln!(out, "{mark}  with count = 0: time += interval; DIR = add (0 left, 1 right)")?;
-        let Walk { time, interval } = self.walk();
+        writeln!(out, "{prefix}  with count = 0: time += interval; DIR = add (0 left, 1 right)")?;
+        let Maxima { time, interval } = self.maxima();
         let (time_bits, interval_bits) = (bits(time), bits(interval));
         writeln!(
             out,
-            "{mark}time comes to {time}: it needs {time_bits} bits, uint{}_t, or less where it is kept from step to step.",
+            "{prefix}time reaches {time}: {time_bits} bits (uint{}_t), or fewer if it is relative to the last step.",
             width(time_bits)
         )?;
         writeln!(
             out,
-            "{mark}interval comes to {interval}: it needs {interval_bits} bits, uint{}_t.",
+            "{prefix}interval reaches {interval}: {interval_bits} bits (uint{}_t).",
             width(interval_bits)
         )
     }
 
-    fn walk(&self) -> Walk {
-        let mut walk = Walk::default();
+    /// The maximum values of the variables that execute the table.
+    fn maxima(&self) -> Maxima {
+        let mut maxima = Maxima::default();
         for entry in &self.table.entries {
             let (count, first, add) =
                 (i128::from(entry.count), i128::from(entry.interval), i128::from(entry.add));
             // For a wait, `add` is a direction.
-            let (taken, last) = match count {
+            let (duration, last) = match count {
                 0 => (first, first),
                 _ => (first * count + add * (count * (count - 1) / 2), first + add * (count - 1)),
             };
-            walk.time += u128::try_from(taken).unwrap_or(0);
-            walk.interval = walk.interval.max(u128::try_from(first.max(last)).unwrap_or(0));
+            maxima.time += u128::try_from(duration).unwrap_or(0);
+            maxima.interval = maxima.interval.max(u128::try_from(first.max(last)).unwrap_or(0));
         }
-        walk
+        maxima
     }
 
     /// What a compiler or chip may reject, with numbers and a fix.
     pub fn warnings(&self, language: Language) -> Vec<String> {
         let format = self.table.format;
         let entries = self.table.entries.len() as u64;
-        let (max_bytes, who) = match language {
-            Language::Avr => (MAX_AVR_BYTES, "avr-gcc takes"),
-            Language::C => (MAX_C_BYTES, "a compiler need take"),
+        let (max_bytes, allows) = match language {
+            Language::Avr => (MAX_AVR_BYTES, "avr-gcc allows"),
+            Language::C => (MAX_C_BYTES, "C99 compilers may allow only"),
             Language::Rust | Language::Csv => return Vec::new(),
         };
-        let remedy =
-            "allow a greater error, choose narrower entries, or make a table of each part of the motion";
+        let fix = "use a larger error, narrower entries, or one table per part of the motion";
         let mut warnings = Vec::new();
         for column in Column::ALL {
-            let bytes = entries * u64::from(column.bits(&format) / 8);
+            let bytes = entries * u64::from(column.bits(format) / 8);
             if bytes > max_bytes {
                 warnings.push(format!(
-                    "{}_{} has {bytes} bytes, and {who} at most {max_bytes} in an array: {remedy}",
+                    "{}_{} has {bytes} bytes; {allows} {max_bytes} bytes per array; {fix}",
                     self.name,
                     column.name()
                 ));
@@ -170,7 +178,7 @@ impl Source<'_> {
         }
         if language == Language::Avr && self.table.bytes() > NEAR_BYTES {
             warnings.push(format!(
-                "the table has {} bytes, and pgm_read_byte and its like reach the first {NEAR_BYTES} of program memory: read it by pgm_read_byte_far, or {remedy}",
+                "the table has {} bytes; pgm_read_byte reaches only the first {NEAR_BYTES} bytes of program memory; use pgm_read_byte_far, or {fix}",
                 self.table.bytes()
             ));
         }
@@ -178,10 +186,9 @@ impl Source<'_> {
     }
 
     fn c(&self, out: &mut impl Write, avr: bool) -> fmt::Result {
-        let (name, format) = (self.name, self.table.format);
-        let capitals = Capitals(name);
+        let (capitals, format) = (Capitals(self.name), self.table.format);
         writeln!(out, "/*")?;
-        self.head(out, " * ")?;
+        self.comment(out, " * ")?;
         for warning in self.warnings(if avr { Language::Avr } else { Language::C }) {
             writeln!(out, " *\n * WARNING: {warning}.")?;
         }
@@ -192,57 +199,59 @@ impl Source<'_> {
         writeln!(out)?;
         writeln!(out, "#define {capitals}_ENTRIES {}ul", self.table.entries.len())?;
         writeln!(out, "#define {capitals}_STEPS {}ull", self.table.error.steps)?;
-        writeln!(out, "#define {capitals}_FRACTION_BITS {}", format.fraction_bits)?;
+        writeln!(out, "#define {capitals}_FRACTION_BITS {}", format.fraction_bits())?;
         writeln!(out, "#define {capitals}_CLOCK_HZ {}ul", self.clock_hz)?;
+        Column::ALL.iter().try_for_each(|column| self.c_array(out, *column, avr))?;
+        writeln!(out, "\n#endif")
+    }
+
+    fn c_array(&self, out: &mut impl Write, column: Column, avr: bool) -> fmt::Result {
         // C has no empty arrays.
         let length = self.table.entries.len().max(1);
         let memory = if avr { " PROGMEM" } else { "" };
-        for column in Column::ALL {
-            let sign = if matches!(column, Column::Add) { "" } else { "u" };
-            let kind = format!("{sign}int{}_t", column.bits(&format));
-            writeln!(out, "\nstatic const {kind} {name}_{}[{length}]{memory} = {{", column.name())?;
-            if self.table.entries.is_empty() {
-                writeln!(out, "0")?;
-            }
-            // Literals are as wide as the array's type: `int` has 16 bits on an AVR.
-            let bits = column.bits(&format);
-            let suffix = match bits {
-                ..=16 => "",
-                17..=32 => "l",
-                _ => "ll",
-            };
-            let min = -1_i64 << (bits - 1);
-            self.numbers(out, |out, entry| match column {
-                Column::Interval => write!(out, "{}u{suffix}", entry.interval),
-                Column::Count => write!(out, "{}u{suffix}", entry.count),
-                // The minimum of a type has no literal.
-                Column::Add if entry.add == min => write!(out, "{}{suffix} - 1", entry.add + 1),
-                Column::Add => write!(out, "{}{suffix}", entry.add),
-            })?;
-            writeln!(out, "}};")?;
+        let sign = if matches!(column, Column::Add) { "" } else { "u" };
+        let bits = column.bits(self.table.format);
+        let (name, array) = (self.name, column.name());
+        writeln!(out, "\nstatic const {sign}int{bits}_t {name}_{array}[{length}]{memory} = {{")?;
+        if self.table.entries.is_empty() {
+            writeln!(out, "0")?;
         }
-        writeln!(out, "\n#endif")
+        // Literals are as wide as the array's type: `int` has 16 bits on an AVR.
+        let suffix = match bits {
+            ..=16 => "",
+            17..=32 => "l",
+            _ => "ll",
+        };
+        let min = self.table.format.min_add();
+        self.numbers(out, |out, entry| match column {
+            Column::Interval => write!(out, "{}u{suffix}", entry.interval),
+            Column::Count => write!(out, "{}u{suffix}", entry.count),
+            // The minimum of a type has no literal.
+            Column::Add if entry.add == min => write!(out, "{}{suffix} - 1", entry.add + 1),
+            Column::Add => write!(out, "{}{suffix}", entry.add),
+        })?;
+        writeln!(out, "}};")
     }
 
     fn rust(&self, out: &mut impl Write) -> fmt::Result {
         let (capitals, format) = (Capitals(self.name), self.table.format);
-        self.head(out, "// ")?;
+        self.comment(out, "// ")?;
         writeln!(out, "\n/// Steps of the table.")?;
         writeln!(out, "pub const {capitals}_STEPS: u64 = {};", self.table.error.steps)?;
-        writeln!(out, "/// Bits of a cycle's fraction in interval and add.")?;
-        writeln!(out, "pub const {capitals}_FRACTION_BITS: u32 = {};", format.fraction_bits)?;
-        writeln!(out, "/// The clock whose cycles are counted, in Hz.")?;
+        writeln!(out, "/// Fractional bits of interval and add.")?;
+        writeln!(out, "pub const {capitals}_FRACTION_BITS: u32 = {};", format.fraction_bits())?;
+        writeln!(out, "/// Clock of the cycles, in Hz.")?;
         writeln!(out, "pub const {capitals}_CLOCK_HZ: u32 = {};", self.clock_hz)?;
         for column in Column::ALL {
             let (kind, about) = match column {
                 Column::Interval => (
-                    format!("u{}", format.interval_bits),
+                    format!("u{}", column.bits(format)),
                     "Time before an entry's first step, or of its wait.",
                 ),
-                Column::Count => (format!("u{}", format.count_bits), "Steps; 0 for a wait."),
+                Column::Count => (format!("u{}", column.bits(format)), "Steps; 0 for a wait."),
                 Column::Add => (
-                    format!("i{}", format.add_bits),
-                    "What each next interval is longer; of a wait the level of DIR after it.",
+                    format!("i{}", column.bits(format)),
+                    "Increment of the interval after each step; for a wait the level of DIR after it.",
                 ),
             };
             let (array, length) = (Capitals(column.name()), self.table.entries.len());
@@ -258,14 +267,14 @@ impl Source<'_> {
     }
 
     fn csv(&self, out: &mut impl Write) -> fmt::Result {
-        let bits = self.table.format.fraction_bits;
+        let bits = self.table.format.fraction_bits();
         writeln!(out, "interval_q{bits},count,add_q{bits}")?;
         let mut rows = self.table.entries.iter();
         rows.try_for_each(|entry| writeln!(out, "{},{},{}", entry.interval, entry.count, entry.add))
     }
 
     fn numbers<W: Write>(&self, out: &mut W, one: impl Fn(&mut W, &Entry) -> fmt::Result) -> fmt::Result {
-        for line in self.table.entries.chunks(IN_A_LINE) {
+        for line in self.table.entries.chunks(NUMBERS_PER_LINE) {
             write!(out, "   ")?;
             for entry in line {
                 write!(out, " ")?;
@@ -296,17 +305,18 @@ impl Column {
         }
     }
 
-    const fn bits(self, format: &EntryFormat) -> u32 {
+    const fn bits(self, format: EntryFormat) -> u32 {
+        let [interval, count, add] = format.widths();
         match self {
-            Self::Interval => format.interval_bits,
-            Self::Count => format.count_bits,
-            Self::Add => format.add_bits,
+            Self::Interval => interval,
+            Self::Count => count,
+            Self::Add => add,
         }
     }
 }
 
 #[derive(Default)]
-struct Walk {
+struct Maxima {
     time: u128,
     interval: u128,
 }
@@ -375,9 +385,9 @@ mod tests {
         let (time, interval) = (145 << 16, 100 << 16);
         for line in [
             format!(
-                " * time comes to {time}: it needs 24 bits, uint32_t, or less where it is kept from step to step."
+                " * time reaches {time}: 24 bits (uint32_t), or fewer if it is relative to the last step."
             ),
-            format!(" * interval comes to {interval}: it needs 23 bits, uint32_t."),
+            format!(" * interval reaches {interval}: 23 bits (uint32_t)."),
         ] {
             assert!(c.lines().any(|found| found == line), "{line} in {c}");
         }
@@ -399,7 +409,7 @@ mod tests {
         let long = vec![entry; 8192];
         let c = written(long, "", Language::C);
         assert!(
-            c.contains(" * WARNING: axis_0_interval has 65536 bytes, and a compiler need take at most 65535"),
+            c.contains(" * WARNING: axis_0_interval has 65536 bytes; C99 compilers may allow only 65535 bytes per array"),
             "{}",
             &c[..1500]
         );
@@ -416,7 +426,7 @@ mod tests {
     }
 
     #[test]
-    fn the_least_and_the_greatest_numbers_have_their_literals() {
+    fn minimum_and_maximum_numbers_are_written_as_literals() {
         let entry = Entry { interval: u64::MAX, count: u32::MAX, add: i64::MIN };
         let c = written(vec![entry], "", Language::C);
         for literal in ["18446744073709551615ull", "4294967295ul", "-9223372036854775807ll - 1"] {

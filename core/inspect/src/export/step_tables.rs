@@ -1,25 +1,17 @@
 //! Step times of an axis or a run as firmware tables, with their cost and source code (DESIGN B8).
 
 use crate::export::source_code::{Language, Source, headline};
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
 use serde::Serialize;
-use stepscope_motion::{
-    AxisPlan, ScheduledStep,
-    step_tables::{EntryFormat, Form, Stored, Tolerance, stored, stored_steps},
-};
-use stepscope_peripheral::{
-    config::{Bus, Config},
-    segment::PulseTimes,
-    trace::Step,
-    units::Cycles,
-};
+use stepscope_motion::step_tables::{EntryFormat, Form, Stored, Tolerance, stored, stored_steps};
+use stepscope_motion::{AxisPlan, ScheduledStep};
+use stepscope_peripheral::config::{Bus, Config};
+use stepscope_peripheral::{segment::PulseTimes, trace::Step, units::Cycles};
 use stepscope_scenario::{Problem, Scenario, of_config};
 use stepscope_sim::SelectedAxis;
 
+/// Step tables of one axis, in every form and entry format.
 #[derive(Clone, Debug)]
 pub struct StepTables<'a> {
     scenario: &'a Scenario,
@@ -48,13 +40,14 @@ pub struct TableCost {
     pub steps: u64,
     pub entries: usize,
     pub bytes: u64,
-    /// Bytes in the paper's own format.
+    /// Bytes in the format of the motion's paper, if it has one.
     pub document_bytes: Option<u64>,
     pub largest_s: f64,
     pub rms_s: f64,
     pub why: Option<String>,
 }
 
+/// An error in us as cycles, rounded down.
 pub fn tolerance_cycles(error_us: f64, clock_hz: u32) -> Cycles {
     // One division, so that 25 us at 16 MHz are 400 cycles and not 399.
     Cycles((error_us * f64::from(clock_hz) / 1e6) as u64)
@@ -94,6 +87,7 @@ impl<'a> StepTables<'a> {
         stored.map_err(|cause| cause.to_string())
     }
 
+    /// What [`Self::stored`] costs; [`TableCost::why`] has its error.
     pub fn cost(&self, form: &str, widths: &str, error_us: f64) -> TableCost {
         let seconds = |cycles: f64| cycles / f64::from(self.scenario.clock_hz);
         match self.stored(form, widths, error_us) {
@@ -116,7 +110,7 @@ impl<'a> StepTables<'a> {
         }
     }
 
-    /// A table as source code; `language` is `c`, `avr`, `rust` or `csv`.
+    /// A table (form, entry format, error in us) as source code; `language` is `c`, `avr`, `rust` or `csv`.
     pub fn source(
         &self,
         axis: usize,
@@ -147,7 +141,7 @@ mod tests {
     use stepscope_sim::ValidatedScenario;
 
     #[test]
-    fn steps_of_a_run_have_the_tables_of_their_plan_except_the_papers() {
+    fn steps_of_a_run_have_the_tables_of_their_plan_but_no_paper_format() {
         let validated =
             ValidatedScenario::from_json(r#"{"source":{"motion":{"engine":"segments","axes":[{}]}}}"#);
         let experiment = validated.experiment().expect("no problems");

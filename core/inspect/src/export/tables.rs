@@ -2,12 +2,9 @@
 
 use crate::packets::log::LoggedTick;
 use core::fmt::{self, Write};
+use stepscope_peripheral::signal::{self, Record};
 use stepscope_peripheral::{
-    segment::Segment,
-    signal::{self, Record},
-    trace::shown_signals,
-    units::Instant,
-    wire::packet::ChannelCommand,
+    segment::Segment, trace::shown_signals, units::Instant, wire::packet::ChannelCommand,
 };
 
 /// The header of [`write_edges_row`].
@@ -28,6 +25,7 @@ pub fn write_edges_row(out: &mut impl Write, record: Record, clock_hz: u32, chan
     out.write_char('\n')
 }
 
+/// The header of [`write_tick_row`].
 pub fn write_ticks_head(out: &mut impl Write, channels: u8) -> fmt::Result {
     out.write_str("start_cycle,packet")?;
     (0..channels).try_for_each(|channel| write!(out, ",steps{channel}"))?;
@@ -45,6 +43,7 @@ pub fn write_tick_row(out: &mut impl Write, tick: &LoggedTick, channels: u8) -> 
     out.write_char('\n')
 }
 
+/// The header of [`write_segment_row`].
 pub const SEGMENTS_HEAD: &str = "channel,start_cycle,kind,count,interval_q16,add_q16,dir,length_q16\n";
 
 /// One row: channel, start of its list, and the segment's numbers.

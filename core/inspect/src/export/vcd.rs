@@ -67,7 +67,9 @@ impl FromStr for Timescale {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let joined =
             |scale: &Self| text.split_whitespace().collect::<String>() == scale.to_string().replace(' ', "");
-        Self::all().find(joined).ok_or("give 1, 10 or 100 of s, ms, us, ns, ps or fs, such as 10ns")
+        Self::all()
+            .find(joined)
+            .ok_or("unknown timescale; use 1, 10 or 100 of s, ms, us, ns, ps or fs, such as 10ns")
     }
 }
 
@@ -107,42 +109,18 @@ pub struct VcdWriter<W: io::Write> {
 impl<W: io::Write> VcdWriter<W> {
     /// A dump in ns: the signals of `channels` channels and of the line.
     pub fn new(out: W, clock_hz: u32, channels: u8) -> io::Result<Self> {
-        Self::with_timescale(out, Timescale::default(), clock_hz, channels)
+        Self::with_signals(out, Timescale::default(), clock_hz, channels, &[], [])
     }
 
-    /// A dump in another unit; fails with [`TooCoarse`] if cycles would share a time.
-    pub fn with_timescale(out: W, timescale: Timescale, clock_hz: u32, channels: u8) -> io::Result<Self> {
-        Self::with_analog(out, timescale, clock_hz, channels, &[])
-    }
-
-    pub fn with_words<'n>(
-        out: W,
-        timescale: Timescale,
-        clock_hz: u32,
-        channels: u8,
-        words: impl IntoIterator<Item = (&'n str, u32)>,
-    ) -> io::Result<Self> {
-        Self::begin(out, (timescale, clock_hz, channels), &[], words)
-    }
-
-    /// Adds real variables of these names.
-    pub fn with_analog(
+    /// A dump with additional real variables and signals (name, bits). Fails with [`TooCoarse`].
+    pub fn with_signals<'n>(
         out: W,
         timescale: Timescale,
         clock_hz: u32,
         channels: u8,
         names: &[String],
-    ) -> io::Result<Self> {
-        Self::begin(out, (timescale, clock_hz, channels), names, [])
-    }
-
-    fn begin<'n>(
-        out: W,
-        (timescale, clock_hz, channels): (Timescale, u32, u8),
-        reals: &[String],
         words: impl IntoIterator<Item = (&'n str, u32)>,
     ) -> io::Result<Self> {
-        let names = reals;
         let clock_hz = clock_hz.max(1);
         let timescale = timescale
             .of_clock(clock_hz)
@@ -177,11 +155,13 @@ impl<W: io::Write> VcdWriter<W> {
         Ok(Self { levels: Some(levels), ..Self::empty(Writer::new(out), timescale, clock_hz, signals) })
     }
 
+    /// Ends one piece of a file; [`Self::resume`] begins the next.
     pub fn pause(mut self) -> io::Result<()> {
         self.result?;
         self.out.flush()
     }
 
+    /// Ends the file at cycle `end`; fails with the first error of all writes.
     pub fn finish(mut self, end: u64) -> io::Result<()> {
         let stamp = self.stamp(end);
         self.result?;
@@ -189,6 +169,7 @@ impl<W: io::Write> VcdWriter<W> {
         self.out.flush()
     }
 
+    /// Whether a write has failed, so that the run can be aborted.
     pub const fn has_failed(&self) -> bool {
         self.result.is_err()
     }
@@ -200,7 +181,7 @@ impl<W: io::Write> VcdWriter<W> {
         u64::try_from(stamp).map_err(|_| {
             let (scale, clock_hz) = (self.timescale, self.clock_hz);
             io::Error::other(format!(
-                "cycle {cycle} of a clock of {clock_hz} Hz comes after 2^64 times {scale}; give a coarser timescale"
+                "cycle {cycle} of a clock of {clock_hz} Hz exceeds 2^64 times {scale}; use a coarser timescale"
             ))
         })
     }
@@ -281,11 +262,11 @@ mod tests {
     use vcd::{Command, Parser};
 
     #[test]
-    fn a_file_in_pieces_is_the_file() {
+    fn a_file_written_in_pieces_equals_one_written_at_once() {
         let records: Vec<Record> =
             (0..20).map(|i| Record { cycle: Instant(i * 3), levels: Levels(0x7_0000_0000 ^ i) }).collect();
-        let mut whole = Vec::new();
-        let mut writer = VcdWriter::new(&mut whole, 16_000_000, 3).expect("memory takes it");
+        let mut expected = Vec::new();
+        let mut writer = VcdWriter::new(&mut expected, 16_000_000, 3).expect("memory takes it");
         records.iter().for_each(|record| writer.record(*record));
         writer.finish(60).expect("memory takes it");
         let mut pieces = Vec::new();
@@ -297,7 +278,7 @@ mod tests {
         }
         writer.record(records[19]);
         writer.finish(60).expect("memory takes it");
-        assert_eq!(pieces, whole);
+        assert_eq!(pieces, expected);
     }
 
     #[test]
@@ -331,12 +312,13 @@ mod tests {
 
     fn stamps(scale: &str, clock_hz: u32, cycles: &[u64]) -> Vec<u64> {
         let scale = scale.parse().expect("a timescale");
-        let writer = VcdWriter::with_timescale(io::sink(), scale, clock_hz, 1).expect("it fits the clock");
+        let writer =
+            VcdWriter::with_signals(io::sink(), scale, clock_hz, 1, &[], []).expect("it fits the clock");
         cycles.iter().map(|cycle| writer.stamp(*cycle).expect("it is early enough")).collect()
     }
 
     #[test]
-    fn every_cycle_comes_back_from_its_time_at_every_clock() {
+    fn cycles_are_restored_exactly_from_their_times() {
         for (scale, clock_hz) in [
             ("1 ns", 1_000_000_000),
             ("1 ns", 999_999_999),
@@ -358,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn a_timescale_is_read_and_one_that_is_too_coarse_is_refused() {
+    fn timescales_are_parsed_and_too_coarse_ones_rejected() {
         for (given, expected) in [
             ("1ns", Some("1 ns")),
             ("100 us", Some("100 us")),
@@ -384,7 +366,7 @@ mod tests {
         );
         let late =
             VcdWriter::new(io::sink(), 11, 1).expect("it fits the clock").finish(9_000_000_000_000_000);
-        assert!(late.is_err_and(|error| error.to_string().contains("give a coarser timescale")));
+        assert!(late.is_err_and(|error| error.to_string().contains("use a coarser timescale")));
     }
 
     #[test]

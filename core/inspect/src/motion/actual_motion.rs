@@ -1,17 +1,12 @@
 //! The actual motion of one channel's pulses (DESIGN A8, B1).
 //!
-//! With ticks the speed is steps per tick; with segments and recorded pulses it is 1/interval per step. Step 1 of a
-//! constant rate is due after half an interval, so a first interval counts as no faster than the next one.
+//! With ticks the speed is steps per tick; with segments and recorded pulses it is 1/interval per step. The first step
+//! of a constant rate is due after half an interval, so the speed of a first interval is at most that of the next one.
 
 use crate::motion::step_acceleration;
 use crate::packets::log::{LoggedTick, PacketLog};
-use stepscope_peripheral::{
-    config::Config,
-    segment::{FRACTION_BITS, Segment, SegmentList},
-    trace::Step,
-    units::Cycles,
-    wire::packet::ChannelCommand,
-};
+use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
+use stepscope_peripheral::{config::Config, trace::Step, units::Cycles, wire::packet::ChannelCommand};
 
 #[derive(Clone, Copy, Debug)]
 enum Source<'a> {
@@ -20,6 +15,7 @@ enum Source<'a> {
     Recorded,
 }
 
+/// The pulses of one channel of a run or a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct Pulses<'a> {
     pub channel: u8,
@@ -28,7 +24,7 @@ pub struct Pulses<'a> {
     clock_hz: u32,
 }
 
-/// A constant speed in steps/s, left negative, over a time in s.
+/// A constant speed in steps/s over a time in s; negative to the left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rate {
     pub from_s: f64,
@@ -57,10 +53,12 @@ impl<'a> Pulses<'a> {
         Self { channel, steps, source: Source::Recorded, clock_hz }
     }
 
+    /// Cycles per s.
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
     }
 
+    /// Cycles per s, as a float.
     pub fn hz(&self) -> f64 {
         f64::from(self.clock_hz)
     }
@@ -82,6 +80,7 @@ impl<'a> Pulses<'a> {
         }
     }
 
+    /// The position in steps at a time.
     pub fn position_at(&self, time_s: f64) -> i32 {
         let after = self.steps_until(time_s);
         after.checked_sub(1).and_then(|last| self.steps.get(last)).map_or(0, |step| step.position)
@@ -92,9 +91,10 @@ impl<'a> Pulses<'a> {
         self.steps.partition_point(|step| step.cycle as f64 / hz <= time_s)
     }
 
+    /// The speed in steps/s at a time.
     pub fn speed_at(&self, time_s: f64) -> f64 {
         let mut speed = 0.0;
-        // Includes an interval that begins now, not one that ends now.
+        // An interval includes its begin, not its end.
         self.rates(time_s, time_s, &mut |rate| {
             if rate.from_s <= time_s && time_s < rate.to_s {
                 speed = rate.speed;
@@ -103,8 +103,7 @@ impl<'a> Pulses<'a> {
         speed
     }
 
-    /// Calls `each` with start, end (s) and acceleration between steps without a plan, within
-    /// `from_s..=to_s`.
+    /// Calls `each` with start, end and acceleration between steps, for steps without a plan, within `from_s..=to_s`.
     pub fn accelerations(&self, from_s: f64, to_s: f64, each: &mut dyn FnMut(f64, f64, f64)) {
         let hz = self.hz();
         let seconds = |index: usize| self.steps.get(index).map(|step| step.cycle as f64 / hz);
@@ -120,6 +119,7 @@ impl<'a> Pulses<'a> {
         }
     }
 
+    /// The acceleration in steps/s^2 at a time, as in [`Self::accelerations`].
     pub fn acceleration_at(&self, time_s: f64) -> Option<f64> {
         step_acceleration::of(self.steps, self.steps_until(time_s).checked_sub(1)?, self.hz())
     }
@@ -197,19 +197,19 @@ impl<'a> Pulses<'a> {
                         start + k * i128::from(interval) + add * (k * (k - 1) / 2)
                     };
                     next = after(count);
-                    let first = first_not(count, |k| seconds(after(k + 1)) < from_s);
+                    let first = first_false(count, |k| seconds(after(k + 1)) < from_s);
                     for k in first..count {
                         let (begin, end) = (after(k), after(k + 1));
                         if seconds(begin) > to_s {
                             break;
                         }
-                        let mut whole = end - begin;
+                        let mut interval = end - begin;
                         if k == 0 && !follows {
                             let second =
                                 if count > 1 { Some(after(2) - end) } else { interval_after(list, index) };
-                            whole = whole.max(second.unwrap_or(whole));
+                            interval = interval.max(second.unwrap_or(interval));
                         }
-                        let speed = hz * one / whole as f64;
+                        let speed = hz * one / interval as f64;
                         let speed = if right { speed } else { -speed };
                         each(Rate { from_s: seconds(begin), to_s: seconds(end), speed });
                     }
@@ -228,8 +228,8 @@ fn interval_after(list: &SegmentList, index: usize) -> Option<i128> {
     }
 }
 
-/// Partition point of `before` in `0..count`.
-fn first_not(count: u32, before: impl Fn(u32) -> bool) -> u32 {
+/// The first number in `0..count` for which `before` is false.
+fn first_false(count: u32, before: impl Fn(u32) -> bool) -> u32 {
     let (mut from, mut to) = (0, count);
     while from < to {
         let middle = from + (to - from) / 2;
@@ -249,7 +249,7 @@ mod tests {
     };
 
     #[test]
-    fn a_first_step_after_half_an_interval_makes_no_twofold_speed() {
+    fn a_first_step_after_half_an_interval_does_not_double_the_speed() {
         let config =
             Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
         let cycles = |count: u64| count << FRACTION_BITS;
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn recorded_steps_have_the_speed_from_each_to_the_next_and_back() {
+    fn recorded_steps_have_the_speed_of_their_intervals() {
         let steps = [(100, 1), (150, 2), (250, 1)].map(|(cycle, position)| Step { cycle, position });
         let pulses = Pulses::recorded(0, &steps, 1000);
         let at = [0.05, 0.1, 0.12, 0.15, 0.249, 0.25].map(|time_s| pulses.speed_at(time_s));
@@ -306,23 +306,5 @@ mod tests {
             [0.000_9, 0.001, 0.001_4, 0.001_5, 0.002].map(|at| pulses.speed_at(at)),
             [0.0, speed, speed, 0.0, 0.0]
         );
-    }
-
-    #[test]
-    fn the_speed_of_pulses_is_that_of_the_motion() {
-        use crate::motion::actual_motion::Pulses;
-        use crate::trace::stored_run::Recording;
-        use stepscope_peripheral::trace::steps;
-        use stepscope_sim::Experiment;
-
-        // Of a run of the default motion: 3200 steps in 0.4 s.
-        let experiment = Experiment::from_json("{}").expect("the default motion");
-        let mut recording = Recording::default();
-        experiment.run(&mut recording);
-        let made = steps(&recording.trace, 0);
-        let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
-        let start_s = pulses.zero() as f64 / pulses.hz();
-        assert!((pulses.speed_at(start_s + 0.2) - 16_000.0).abs() < 500.0); // half-way, as fast as it gets
-        assert_eq!(pulses.position_at(start_s + 0.5), 3200);
     }
 }

@@ -1,10 +1,11 @@
 //! Steps per unit of length by least squares over measured pairs (DESIGN B3, Zhang 2012).
 //!
 //! ```text
-//! steps = k*length            k = sum(l*s)/sum(l*l)                 through the origin, as in Zhang 2012
-//! steps = k*length + offset   k = sum((l-l')*(s-s'))/sum((l-l')^2)  l', s' the means; an offset indicates
-//! backlash or a misplaced zero
+//! steps = k*length            k = sum(l*s)/sum(l*l)                 through the origin
+//! steps = k*length + offset   k = sum((l-l')*(s-s'))/sum((l-l')^2)  l', s': means
 //! ```
+//!
+//! An offset indicates backlash or a wrong zero.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -20,6 +21,7 @@ pub struct Pair {
     pub steps: f64,
 }
 
+/// A straight line through the pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Steps per unit; above 0.
@@ -35,6 +37,7 @@ impl Fit {
         Self { steps_per_unit, offset_steps, residuals: pairs.iter().map(residual).collect() }
     }
 
+    /// RMS residual in steps.
     pub fn rms(&self) -> f64 {
         let sum: f64 = self.residuals.iter().map(|residual| residual * residual).sum();
         libm::sqrt(sum / self.residuals.len().max(1) as f64)
@@ -52,12 +55,14 @@ impl Fit {
     }
 }
 
+/// Both lines through the same pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     pub through_origin: Fit,
     pub with_offset: Fit,
 }
 
+/// Why pairs have no line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BadPairs {
@@ -83,12 +88,12 @@ impl fmt::Display for BadPairs {
         match self {
             Self::TooFew { given } => write!(
                 f,
-                "{given} pair{} of length and steps; give at least 2, with different lengths",
+                "{given} pair{} of length and steps; use at least 2, with different lengths",
                 if *given == 1 { "" } else { "s" }
             ),
             Self::Number { index, pair } => write!(
                 f,
-                "pair {} has length {:?} and {:?} steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
+                "pair {} has length {:?} and {:?} steps; use numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
                 index + 1,
                 pair.length,
                 pair.steps
@@ -98,7 +103,7 @@ impl fmt::Display for BadPairs {
             }
             Self::NotRising { steps_per_unit } => write!(
                 f,
-                "{steps_per_unit:?} steps per unit: steps must increase with length; give both the same sign and check the order of the columns"
+                "{steps_per_unit:?} steps per unit: steps must increase with length; use the same sign for both, and check the order of the columns"
             ),
         }
     }
@@ -112,9 +117,10 @@ impl Calibration {
         if pairs.len() < 2 {
             return Err(BadPairs::TooFew { given: pairs.len() });
         }
-        let good = |value: f64| value == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&libm::fabs(value));
+        let is_valid =
+            |value: f64| value == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&libm::fabs(value));
         if let Some((index, pair)) =
-            pairs.iter().enumerate().find(|(_, pair)| !good(pair.length) || !good(pair.steps))
+            pairs.iter().enumerate().find(|(_, pair)| !is_valid(pair.length) || !is_valid(pair.steps))
         {
             return Err(BadPairs::Number { index, pair: *pair });
         }
@@ -153,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn exact_pairs_give_their_own_line() {
+    fn exact_pairs_are_fitted_exactly() {
         // Zhang's 565 pulses a cm, and the same from a zero 2 cm off.
         let found = Calibration::of(&pairs(&[(10.0, 5650.0), (30.5, 17_232.5), (45.0, 25_425.0)])).unwrap();
         assert!((found.through_origin.steps_per_unit - 565.0).abs() < 1e-10, "{found:?}");
@@ -166,7 +172,7 @@ mod tests {
 
     /// By hand: sum(l*s) = 1*3 + 2*5 + 4*8 = 45, sum(l*l) = 21; means 7/3 and 16/3; 23/14 and 3/2.
     #[test]
-    fn the_lines_are_those_of_least_squares_by_hand() {
+    fn both_lines_equal_a_calculation_by_hand() {
         let given = pairs(&[(1.0, 3.0), (2.0, 5.0), (4.0, 8.0)]);
         let Calibration { through_origin, with_offset } = Calibration::of(&given).unwrap();
         assert!((through_origin.steps_per_unit - 45.0 / 21.0).abs() < 1e-15);
@@ -180,9 +186,9 @@ mod tests {
         assert!((through_origin.rms() - (squares.iter().sum::<f64>() / 3.0).sqrt()).abs() < 1e-14);
     }
 
-    /// A least-squares line has a smaller sum of squares than its neighbours.
+    /// A least-squares line has a smaller sum of squares than its neighbors.
     #[test]
-    fn no_other_line_is_better() {
+    fn neighboring_lines_have_larger_residuals() {
         let given: Vec<Pair> = (1..40)
             .map(|i| Pair {
                 length: f64::from(i * i % 37),
@@ -202,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn the_least_and_the_greatest_numbers_have_a_line() {
+    fn minimum_and_maximum_magnitudes_are_fitted() {
         for (length, steps) in [(1e-12, 1e12), (1e12, 1e-12)] {
             let found = Calibration::of(&pairs(&[(0.0, 0.0), (length, steps)])).unwrap();
             for fit in [&found.through_origin, &found.with_offset] {
@@ -212,31 +218,31 @@ mod tests {
     }
 
     #[test]
-    fn pairs_without_a_line_are_refused_with_their_numbers() {
+    fn pairs_without_a_line_are_rejected_with_their_values() {
         let rows: [(&[(f64, f64)], &str); 8] = [
-            (&[], "0 pairs of length and steps; give at least 2, with different lengths"),
-            (&[(1.0, 2.0)], "1 pair of length and steps; give at least 2, with different lengths"),
+            (&[], "0 pairs of length and steps; use at least 2, with different lengths"),
+            (&[(1.0, 2.0)], "1 pair of length and steps; use at least 2, with different lengths"),
             (
                 &[(1.0, 2.0), (f64::NAN, 2.0)],
-                "pair 2 has length NaN and 2.0 steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
+                "pair 2 has length NaN and 2.0 steps; use numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
             ),
             // Their squares are 0.
             (
                 &[(1e-200, 1.0), (2e-200, 2.0)],
-                "pair 1 has length 1e-200 and 1.0 steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
+                "pair 1 has length 1e-200 and 1.0 steps; use numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
             ),
             (
                 &[(1.0, f64::INFINITY), (2.0, 2.0)],
-                "pair 1 has length 1.0 and inf steps; give numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
+                "pair 1 has length 1.0 and inf steps; use numbers from 1e-12 to 1e12, or from -1e12 to -1e-12, or 0",
             ),
             (&[(3.0, 2.0), (3.0, 4.0)], "all pairs have length 3; add a pair with another length"),
             (
                 &[(1.0, -2.0), (2.0, -4.0)],
-                "-2.0 steps per unit: steps must increase with length; give both the same sign and check the order of the columns",
+                "-2.0 steps per unit: steps must increase with length; use the same sign for both, and check the order of the columns",
             ),
             (
                 &[(1.0, 5.0), (2.0, 5.0)],
-                "0.0 steps per unit: steps must increase with length; give both the same sign and check the order of the columns",
+                "0.0 steps per unit: steps must increase with length; use the same sign for both, and check the order of the columns",
             ),
         ];
         for (given, expected) in rows {

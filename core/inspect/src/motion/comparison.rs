@@ -5,26 +5,22 @@
 //! ```text
 //! trapezoid      v = (n - t_s*v_0)/(t_i - t_s),  a = (v - v_0)/t_s
 //! staircase      n + (v - f_1)^2/a = t_i*v, with the a of the level whose ramps are nearest to t_s
-//! jerk-limited   v = n/(t_i - t_s); a third of each ramp brings the acceleration, a third holds it: a = 1.5*v/t_s
-//! points         two of them, a smooth curve between: 3x^2 - 2x^3
+//! jerk-limited   v = n/(t_i - t_s), a = 1.5*v/t_s: the acceleration rises, is constant and falls for t_s/3 each
+//! points         two points and a smooth curve: 3x^2 - 2x^3
 //! constant       v = n/t_i
 //! ```
 //!
-//! Rates of a table or staircase are whole numbers, so the move ends early or late. Peaks include the jumps at start
+//! Rates of a table or staircase are whole numbers, so these moves end early or late. Peaks include the jumps at start
 //! and end.
 
 use crate::motion::torque::{Demand, Machine, Moment};
 use alloc::{vec, vec::Vec};
-use stepscope_motion::{
-    AxisPlan, Peaks, Problem,
-    mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed},
-    motor::Motor,
-    moves::{
-        Axis, Constant, Cosine, CosineMethod, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
-        RampShape, Ramps, Staircase, Trapezoid, TrapezoidMethod,
-    },
-    plan_axis,
+use stepscope_motion::mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed};
+use stepscope_motion::moves::{
+    Axis, Constant, Cosine, CosineMethod, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
+    RampShape, Ramps, Staircase, Trapezoid, TrapezoidMethod,
 };
+use stepscope_motion::{AxisPlan, Peaks, Problem, motor::Motor, plan_axis};
 
 /// Acceleration of a staircase's first level in steps/s^2; the others are multiples.
 const LEVEL_STEPS_S2: f64 = 1000.0;
@@ -38,16 +34,17 @@ pub struct Request {
     pub steps: i64,
     pub duration_s: f64,
     pub ramp_s: f64,
+    /// For [`CosineMethod::Sliced`].
     pub slice_s: f64,
     pub sigmoid_range: f64,
     pub time_constants: f64,
-    /// First rate of trapezoid and staircase in steps/s, if the average rate is at least twice that.
+    /// First rate of trapezoid and staircase in steps/s; at most half of the average rate is used.
     pub start_speed: f64,
     pub timer_hz: u32,
 }
 
 impl Request {
-    /// Other parameters get a scenario's defaults.
+    /// A request with default values of all other parameters.
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
         let (Cosine { slice_s, .. }, Ramps { sigmoid_range, time_constants, .. }) =
             (Cosine::default(), Ramps::default());
@@ -93,7 +90,8 @@ impl Request {
         (steps != 0).then_some(request)
     }
 
-    pub fn ask(&self, candidate: Candidate) -> Move {
+    /// The move of a candidate with the requested steps, time and ramps.
+    pub fn to_move(&self, candidate: Candidate) -> Move {
         let Self { duration_s, ramp_s, slice_s, sigmoid_range, time_constants, timer_hz, .. } = *self;
         let distance = Distance::Steps(self.steps as f64);
         let rate = self.steps.unsigned_abs() as f64 / duration_s;
@@ -148,8 +146,7 @@ impl Request {
         }
     }
 
-    /// Level and top speed of a staircase: the level whose ramps are nearest to t_s, otherwise the steepest, without
-    /// a plateau.
+    /// Level and top speed of a staircase: ramps nearest to t_s, or else the steepest without a plateau.
     fn level(&self, rate: f64, start: f64) -> (u8, f64) {
         let top = |level: u8| {
             // n + (v - f_1)^2/a = t_i*v as v^2 - 2*half*v + product = 0.
@@ -162,8 +159,9 @@ impl Request {
         let off = |level: u8, top: f64| {
             libm::fabs((top - start) / (LEVEL_STEPS_S2 * f64::from(level)) - self.ramp_s)
         };
-        let able = (1..=LEVELS).filter_map(|level| Some((level, top(level)?)));
-        able.reduce(|best, other| if off(other.0, other.1) < off(best.0, best.1) { other } else { best })
+        let possible = (1..=LEVELS).filter_map(|level| Some((level, top(level)?)));
+        possible
+            .reduce(|best, other| if off(other.0, other.1) < off(best.0, best.1) { other } else { best })
             .unwrap_or((LEVELS, start + LEVEL_STEPS_S2 * f64::from(LEVELS) * self.duration_s / 2.0))
     }
 }
@@ -181,6 +179,7 @@ pub enum Candidate {
 }
 
 impl Candidate {
+    /// Its name in outputs.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cosine(CosineMethod::Exact) => "Cosine, exact",
@@ -199,6 +198,7 @@ impl Candidate {
     }
 }
 
+/// All kinds of motion to compare.
 pub const CANDIDATES: [Candidate; 12] = [
     Candidate::Cosine(CosineMethod::Exact),
     Candidate::Cosine(CosineMethod::Sliced),
@@ -220,23 +220,26 @@ pub struct Cost {
     pub peaks: Peaks,
     /// End of the move less t_i, in s; negative is early.
     pub time_error_s: f64,
+    /// The same in parts of t_i.
     pub time_error: f64,
     /// Time of the last step in s, not rounded to a clock.
     pub last_step_s: f64,
     pub torque: Option<Torque>,
 }
 
+/// Whether the motor can follow a candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torque {
     /// Whether torque and rate suffice; jumps of speed are not checked.
     pub is_met: bool,
-    pub least: Option<Moment>,
+    pub min_margin: Option<Moment>,
 }
 
+/// One candidate with its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     pub candidate: Candidate,
-    pub wanted: Move,
+    pub requested_move: Move,
     pub plan: Option<AxisPlan>,
     /// The cost, or the problems, with paths from `comparison.moves[0]`.
     pub cost: Result<Cost, Vec<Problem>>,
@@ -248,23 +251,24 @@ pub fn compare(request: &Request) -> Vec<Row> {
 }
 
 fn row(request: &Request, candidate: Candidate) -> Row {
-    let wanted = request.ask(candidate);
+    let requested_move = request.to_move(candidate);
     let Request { mechanics, motor, duration_s, .. } = request;
-    let axis = Axis { mechanics: mechanics.clone(), moves: vec![wanted.clone()], motor: motor.clone() };
+    let axis =
+        Axis { mechanics: mechanics.clone(), moves: vec![requested_move.clone()], motor: motor.clone() };
     let plan = match plan_axis(&axis, "comparison") {
         Ok(plan) => plan,
-        Err(problems) => return Row { candidate, wanted, plan: None, cost: Err(problems) },
+        Err(problems) => return Row { candidate, requested_move, plan: None, cost: Err(problems) },
     };
     let last = request.steps.unsigned_abs() as f64 - 0.5;
     let last_step_s = plan.moves().first().map_or(0.0, |planned| planned.profile.time_s(last));
     let time_error_s = plan.duration_s() - duration_s;
     let torque = Machine::of(&axis).map(|machine| {
         let demand = Demand::of(&machine, &plan);
-        Torque { is_met: demand.is_met(), least: demand.least }
+        Torque { is_met: demand.is_met(), min_margin: demand.min_margin }
     });
     let time_error = time_error_s / duration_s;
     let cost = Cost { peaks: plan.peaks(), time_error_s, time_error, last_step_s, torque };
-    Row { candidate, wanted, plan: Some(plan), cost: Ok(cost) }
+    Row { candidate, requested_move, plan: Some(plan), cost: Ok(cost) }
 }
 
 #[cfg(test)]
@@ -278,7 +282,7 @@ mod tests {
     /// 6400 steps in 0.4 s with ramps of 0.1 s: f_max = 64000/3 but for slices and the exponential, whose area
     /// is 1/(1 - e^-4) - 1/4; the numbers of f_max/t_s and f_max/t_s^2 by a calculator.
     #[test]
-    fn the_papers_move_has_the_calculated_cost() {
+    fn costs_equal_those_of_a_calculator() {
         let rows = [
             // rate, acceleration, jerk, jump of acceleration
             [21_333.333_333_333, 335_103.216_382_91, 10_527_578.027_829, 0.0],
@@ -319,20 +323,20 @@ mod tests {
     }
 
     #[test]
-    fn an_impossible_candidate_has_its_problems() {
+    fn impossible_candidates_report_their_problems() {
         let rows = compare(&Request::new(100, 0.4, 0.2));
         let wrong: Vec<_> = rows.iter().filter(|row| row.cost.is_err()).map(|row| row.candidate).collect();
         assert_eq!(wrong, [Candidate::Cosine(CosineMethod::Sliced)]);
         let rows = compare(&Request { sigmoid_range: 0.0, ..Request::new(6400, 0.4, 0.2) });
         let wrong: Vec<_> = rows.iter().filter(|row| row.cost.is_err()).map(|row| row.candidate).collect();
         assert_eq!(wrong, [Candidate::Ramps(RampShape::Sigmoid)]);
-        // Without steps only the ramps' kinds, which take n, t_i and t_s as they are, say what is wrong with them.
-        let nothing = compare(&Request::new(0, 0.4, 0.3));
-        assert!(nothing.iter().all(|row| row.cost.is_err()), "{nothing:?}");
+        // A move without steps is impossible for every kind.
+        let rows = compare(&Request::new(0, 0.4, 0.3));
+        assert!(rows.iter().all(|row| row.cost.is_err()), "{rows:?}");
     }
 
     #[test]
-    fn every_kind_has_the_requested_steps_time_and_ramps() {
+    fn all_candidates_have_the_requested_steps_time_and_ramps() {
         let request = Request::new(-6400, 4.0, 1.0);
         let rows = compare(&request);
         for row in &rows {
@@ -369,8 +373,8 @@ mod tests {
         let heavy = with(Motor { load_torque_mn_m: 4000.0, ..Motor::default() });
         for row in heavy.iter().filter(|row| row.cost.is_ok()) {
             let found = torque(row);
-            let least = found.least.expect("a move takes time");
-            assert!(!found.is_met && least.margin_mn_m() < 0.0, "{:?}: {found:?}", row.candidate);
+            let min = found.min_margin.expect("a move takes time");
+            assert!(!found.is_met && min.margin_mn_m() < 0.0, "{:?}: {found:?}", row.candidate);
         }
     }
 
@@ -386,17 +390,5 @@ mod tests {
             (2000, 500.0, plan.duration_s())
         );
         assert_eq!(Request::of(&axis, &plan, 1, 0.05), None, "there is no second move");
-    }
-
-    #[test]
-    fn each_kind_of_motion_has_a_cost() {
-        use crate::motion::comparison::{Request, compare};
-
-        // The same way in the same time, by every kind of motion.
-        let rows = compare(&Request::new(3200, 0.4, 0.1));
-        let accelerations =
-            rows.iter().filter_map(|row| row.cost.as_ref().ok()).map(|cost| cost.peaks.acceleration);
-        assert!(accelerations.into_iter().all(|acceleration| acceleration >= 0.0));
-        assert_eq!(rows.len(), 12);
     }
 }

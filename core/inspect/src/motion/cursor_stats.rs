@@ -6,6 +6,7 @@
 use crate::motion::actual_motion::Pulses;
 use stepscope_motion::{AxisPlan, Breakpoints};
 
+/// Mean and RMS of one quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
     pub mean: f64,
@@ -45,10 +46,11 @@ pub(crate) const POINTS: [(f64, f64); 3] =
 /// Statistics of the ideal motion, which starts at `zero_s`, from one time to a later one, in s.
 pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStats {
     let [mut position, mut speed, mut acceleration] = [Sums::default(); 3];
-    Breakpoints::of(plan).intervals(from_s - zero_s, to_s - zero_s, &mut |piece| {
-        let (middle, half) = ((piece.from_s + piece.to_s) / 2.0, (piece.to_s - piece.from_s) / 2.0);
+    Breakpoints::of(plan).intervals(from_s - zero_s, to_s - zero_s, &mut |interval| {
+        let (middle, half) =
+            ((interval.from_s + interval.to_s) / 2.0, (interval.to_s - interval.from_s) / 2.0);
         for (point, weight) in POINTS {
-            let (t, seconds) = (middle + half * point, 2.0 * half * weight * piece.times);
+            let (t, seconds) = (middle + half * point, 2.0 * half * weight * interval.times);
             position.add(plan.position(t), seconds);
             speed.add(plan.speed(t), seconds);
             acceleration.add(plan.acceleration(t), seconds);
@@ -59,6 +61,7 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, from_s: f64, to_s: f64) -> CursorStat
     CursorStats { position, speed, acceleration: Some(acceleration) }
 }
 
+/// Statistics of the pulses between two times in s.
 pub fn actual(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     let hz = pulses.hz();
     let (mut position, mut since_s) = (Sums::default(), from_s);
@@ -81,6 +84,7 @@ pub fn actual(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> CursorStats {
     CursorStats { position, speed, acceleration: None }
 }
 
+/// Acceleration of steps without a plan; `None` where it is unknown throughout.
 pub fn actual_acceleration(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> Option<Moments> {
     let (mut sums, mut known_s) = (Sums::default(), 0.0);
     pulses.accelerations(from_s, to_s, &mut |step_s, next_s, value| {
@@ -99,11 +103,11 @@ mod tests {
     use stepscope_peripheral::trace::{Step, steps};
     use stepscope_sim::Experiment;
 
-    /// Means over a great number of looks, each in the middle of its part.
-    fn brute(from_s: f64, to_s: f64, looks: u32, value: impl Fn(f64) -> f64) -> Moments {
+    /// Means of many samples, each in the middle of its interval.
+    fn brute(from_s: f64, to_s: f64, samples: u32, value: impl Fn(f64) -> f64) -> Moments {
         let mut sums = Sums::default();
-        let each = (to_s - from_s) / f64::from(looks);
-        (0..looks).for_each(|look| sums.add(value(from_s + (f64::from(look) + 0.5) * each), each));
+        let each = (to_s - from_s) / f64::from(samples);
+        (0..samples).for_each(|sample| sums.add(value(from_s + (f64::from(sample) + 0.5) * each), each));
         sums.over(to_s - from_s)
     }
 
@@ -138,7 +142,7 @@ mod tests {
     ];
 
     #[test]
-    fn means_equal_those_of_a_million_samples() {
+    fn means_equal_those_of_many_samples() {
         for moves in MOTIONS {
             let ran = run(&alloc::format!(r#"{{"motion":{{"axes":[{{"moves":[{moves}]}}]}}}}"#));
             let plan = &ran.experiment.plans()[0];
@@ -150,23 +154,23 @@ mod tests {
                 let (from, to) = (zero_s + from, zero_s + to);
                 let peaks = plan.peaks();
                 let far = 3000.0;
-                let looks = 1_000_000;
+                let samples = 1_000_000;
                 let found = ideal(plan, zero_s, from, to);
-                near(found.position, brute(from, to, looks, |t| plan.position(t - zero_s)), far, moves);
-                near(found.speed, brute(from, to, looks, |t| plan.speed(t - zero_s)), peaks.speed, moves);
-                let expected = brute(from, to, looks, |t| plan.acceleration(t - zero_s));
+                near(found.position, brute(from, to, samples, |t| plan.position(t - zero_s)), far, moves);
+                near(found.speed, brute(from, to, samples, |t| plan.speed(t - zero_s)), peaks.speed, moves);
+                let expected = brute(from, to, samples, |t| plan.acceleration(t - zero_s));
                 let found = found.acceleration.expect("the ideal curve has one");
                 near(found, expected, peaks.acceleration.max(1.0), moves);
-                let (found, looks) = (actual(&pulses, from, to), 100_000);
+                let (found, samples) = (actual(&pulses, from, to), 100_000);
                 let at = |t: f64| f64::from(pulses.position_at(t));
-                near(found.position, brute(from, to, looks, at), far, moves);
-                near(found.speed, brute(from, to, looks, |t| pulses.speed_at(t)), peaks.speed, moves);
+                near(found.position, brute(from, to, samples, at), far, moves);
+                near(found.speed, brute(from, to, samples, |t| pulses.speed_at(t)), peaks.speed, moves);
             }
         }
     }
 
     #[test]
-    fn a_whole_moves_means_are_exact() {
+    fn means_over_complete_moves_are_exact() {
         let ran = run(
             r#"{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}},{"dwell":{"duration_s":0.1}}]}]}}"#,
         );
@@ -182,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_of_no_plan_have_the_acceleration_of_their_ramps_where_it_is_known() {
+    fn steps_without_a_plan_have_the_acceleration_of_their_ramps() {
         // A second from rest at 2000 steps/s^2, and half a second at the speed that it comes to: 2000 steps/s.
         let ramp = (1..=1000).map(|k| libm::sqrt(f64::from(k) / 1000.0));
         let steps: Vec<Step> = ramp
@@ -200,7 +204,7 @@ mod tests {
         let both = found(0.5, 1.4).expect("it is known there");
         assert!((both.mean - 2000.0 * 0.5 / 0.9).abs() < 10.0, "{both:?}");
         assert!((both.rms - 2000.0 * (0.5_f64 / 0.9).sqrt()).abs() < 10.0, "{both:?}");
-        // Within eight steps of an end nothing is known, and beyond it nothing is there.
+        // Within eight steps of an end, and beyond it, the acceleration is unknown.
         let (eighth_s, last_s) = (libm::sqrt(0.008), 1.5);
         for (from_s, to_s) in [(0.0, eighth_s - 1e-6), (last_s - 6.9 / 2000.0, last_s + 1.0), (2.0, 3.0)] {
             assert_eq!(found(from_s, to_s), None, "{from_s} to {to_s}");
@@ -212,15 +216,11 @@ mod tests {
             assert_eq!(found.is_some(), expected.is_some(), "{time_s}: {found:?}");
             assert!((found.unwrap_or(0.0) - expected.unwrap_or(0.0)).abs() < 20.0, "{time_s}: {found:?}");
         }
-        // Where the direction turns it is not known.
+        // At a reversal it is unknown.
         let turned: Vec<Step> =
             (0..40).map(|k: i32| Step { cycle: 100 * k as u64, position: 20 - (k - 20).abs() }).collect();
         let pulses = Pulses::recorded(0, &turned, 1_000_000);
-        assert_eq!(
-            pulses.acceleration_at(0.002),
-            None,
-            "eight steps before and after step 20 do not go one way"
-        );
+        assert_eq!(pulses.acceleration_at(0.002), None, "the steps around step 20 change their direction");
         assert_eq!(pulses.acceleration_at(0.001), Some(0.0));
     }
 
@@ -246,17 +246,5 @@ mod tests {
                 pulses.speed_at(time_s)
             );
         }
-    }
-
-    #[test]
-    fn statistics_between_two_cursors() {
-        use crate::motion::cursor_stats::ideal;
-        use stepscope_motion::{moves::Axis, plan_axis};
-
-        // Between two cursors that hold the whole of one turn in 0.4 s.
-        let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
-        let stats = ideal(&plan, 0.0, 0.0, 0.4);
-        assert!((stats.speed.mean - 8000.0).abs() < 1.0);
-        assert!(stats.speed.rms > stats.speed.mean);
     }
 }

@@ -5,10 +5,11 @@ use alloc::{vec, vec::Vec};
 use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
 
-/// Maximum intervals of a column that are all evaluated; of more, every 16th and the last.
+/// Up to this number, all intervals of a column are evaluated; of more, every 16th and the last.
 const MAX_INTERVALS: usize = 256;
-/// Maximum intervals of a column that a line follows; of more it connects minimum and maximum.
+/// Up to this number, a line follows all intervals of a column; for more it connects minimum and maximum.
 const MAX_FOLLOWED: usize = 32;
+/// Points per column of a line.
 const POINTS: usize = 4;
 
 /// Minimum and maximum per column; NaN where there is none.
@@ -29,16 +30,16 @@ impl Band {
             *max = libm::fmax(*max, value);
         }
     }
-}
 
-impl Band {
-    pub(crate) fn still(&mut self, window: Window, from_s: f64, to_s: f64) {
+    /// Adds the value 0 to the columns of a time without motion.
+    pub(crate) fn add_standstill(&mut self, window: Window, from_s: f64, to_s: f64) {
         if to_s > from_s {
             window.columns(from_s, to_s).for_each(|column| self.take(column, 0.0));
         }
     }
 }
 
+/// A time window in s, divided into pixel columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
     pub start_s: f64,
@@ -51,11 +52,12 @@ impl Window {
         (self.end_s - self.start_s) / self.columns as f64
     }
 
-    pub fn centre_s(&self, column: usize) -> f64 {
+    /// Time of the middle of a column.
+    pub fn center_s(&self, column: usize) -> f64 {
         self.start_s + (column as f64 + 0.5) * self.width_s()
     }
 
-    /// The column of a time, which may lie outside.
+    /// The column of a time; negative before the window.
     pub(crate) fn column(&self, time_s: f64) -> i64 {
         libm::floor((time_s - self.start_s) / self.width_s()) as i64
     }
@@ -64,7 +66,7 @@ impl Window {
         self.start_s + column as f64 * self.width_s()
     }
 
-    /// The columns that a time range touches. An empty range has one, unless it lies outside.
+    /// The columns that overlap a time range. An empty range has one, unless it is outside of the window.
     pub(crate) fn columns(&self, from_s: f64, to_s: f64) -> core::ops::Range<usize> {
         let inside = |column: i64| column.clamp(0, self.columns as i64) as usize;
         let after = libm::ceil((to_s - self.start_s) / self.width_s()) as i64;
@@ -72,6 +74,7 @@ impl Window {
     }
 }
 
+/// The ideal motion, in steps, steps/s and steps/s^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ideal {
     pub position: Band,
@@ -91,7 +94,7 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     for column in 0..n {
         let (from, to) = (window.edge_s(column) - zero_s, window.edge_s(column + 1) - zero_s);
         let extremes = match breakpoints.period_within(from, to) {
-            // Many periods per column are evaluated as one.
+            // If a column has several equal periods, one is evaluated.
             Some(bounds) => match period {
                 Some((known, extremes)) if known == bounds => extremes,
                 _ => {
@@ -110,6 +113,7 @@ pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     bands
 }
 
+/// The ideal motion as points of lines, in steps, steps/s and steps/s^2.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct IdealLine {
     /// Times in s; a breakpoint has two points.
@@ -152,7 +156,7 @@ pub fn ideal_line(plan: &AxisPlan, zero_s: f64, window: Window) -> IdealLine {
             let (from, to) = breakpoints.period_within(from, to).unwrap_or((from, to));
             let [position, speed, acceleration] = extremes(plan, &breakpoints, from, to);
             for end in [0, 1] {
-                line.push(window.centre_s(column), [position[end], speed[end], acceleration[end]]);
+                line.push(window.center_s(column), [position[end], speed[end], acceleration[end]]);
             }
         }
     }
@@ -177,9 +181,9 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints, from_s: f64, to_s: f64) 
         let inset = (interval.to_s - interval.from_s) * 1e-9;
         for t in [interval.from_s + inset, interval.to_s - inset] {
             let values = [plan.position(t), plan.speed(t), plan.acceleration(t)];
-            for ([least, greatest], value) in found.iter_mut().zip(values) {
-                *least = libm::fmin(*least, value);
-                *greatest = libm::fmax(*greatest, value);
+            for ([min, max], value) in found.iter_mut().zip(values) {
+                *min = libm::fmin(*min, value);
+                *max = libm::fmax(*max, value);
             }
         }
     };
@@ -204,6 +208,7 @@ pub struct Actual {
     pub speed: Band,
 }
 
+/// The motion of the pulses per column.
 pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
     let mut bands = Actual { position: Band::new(window.columns), speed: Band::new(window.columns) };
     let hz = pulses.hz();
@@ -224,13 +229,13 @@ pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
         if rate.to_s <= window.start_s || rate.from_s >= window.end_s {
             return;
         }
-        bands.speed.still(window, moved_to, rate.from_s);
+        bands.speed.add_standstill(window, moved_to, rate.from_s);
         for column in window.columns(rate.from_s, rate.to_s) {
             bands.speed.take(column, rate.speed);
         }
         moved_to = rate.to_s;
     });
-    bands.speed.still(window, moved_to, window.end_s);
+    bands.speed.add_standstill(window, moved_to, window.end_s);
     bands
 }
 

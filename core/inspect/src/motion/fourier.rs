@@ -1,8 +1,8 @@
 //! Fourier sums of samples (rustfft), and of pulses directly from their times.
 //!
-//! Pulses are not sampled: a pulse train has no maximum frequency and would alias. The k-th coefficient is a sum over
-//! the pulses. Pulses near a grid point go through one transform together, with x the time in periods, g the nearest
-//! of N points and d = N*x - g, |d| <= 1/2:
+//! Pulses are not sampled, because a pulse train has no maximum frequency and would alias. The k-th coefficient is a sum
+//! over the pulses. Pulses near one grid point share a transform, with x the time in periods, g the nearest of N points
+//! and d = N*x - g, |d| <= 1/2:
 //!
 //! ```text
 //! sum dir_i * exp(w*(g_i + d_i)) = sum over m of w^m/m! * F_m(k)
@@ -14,19 +14,16 @@
 
 use alloc::{sync::Arc, vec, vec::Vec};
 use core::f64::consts::TAU;
-use rustfft::{
-    Fft, FftDirection,
-    algorithm::{BluesteinsAlgorithm, Radix4},
-    num_complex::Complex,
-};
+use rustfft::algorithm::{BluesteinsAlgorithm, Radix4};
+use rustfft::{Fft, FftDirection, num_complex::Complex};
 
 /// (pi/16)^12/12! < 1e-17.
 const MOMENTS: usize = 12;
-const GRID_A_HARMONIC: usize = 16;
+const GRID_POINTS_PER_HARMONIC: usize = 16;
 
 /// sum dir_i * exp(-i*2*pi*k*x_i) for k = 1 ..= `order` over (x_i, dir_i), x in periods.
 pub(crate) fn sums(pulses: impl Iterator<Item = (f64, f64)>, order: usize) -> Vec<Complex<f64>> {
-    let points = (GRID_A_HARMONIC * order.max(1)).next_power_of_two();
+    let points = (GRID_POINTS_PER_HARMONIC * order.max(1)).next_power_of_two();
     let cells = moments(pulses, points);
     let transform = Radix4::new(points, FftDirection::Forward);
     let mut sums = vec![Complex { re: 0.0, im: 0.0 }; order];
@@ -63,8 +60,7 @@ fn moments(pulses: impl Iterator<Item = (f64, f64)>, points: usize) -> Vec<[f64;
     cells
 }
 
-/// Amplitudes of harmonics 1 ..= `order` of samples of one period; harmonics from half the number of samples on are
-/// left out.
+/// Amplitudes of harmonics 1 ..= `order` of samples of one period, below half the number of samples.
 pub(crate) fn amplitudes(samples: &[f64], order: usize) -> Vec<f64> {
     let mut line: Vec<Complex<f64>> = samples.iter().map(|&re| Complex { re, im: 0.0 }).collect();
     transform(&mut line);
@@ -72,7 +68,7 @@ pub(crate) fn amplitudes(samples: &[f64], order: usize) -> Vec<f64> {
     line.iter().take(half).skip(1).take(order).map(|c| magnitude(*c) * scale).collect()
 }
 
-/// Radix4 with Bluestein instead of the planner, whose SIMD variants change the last bits.
+/// Radix4 and Bluestein, because the SIMD variants of the planner change the last bits.
 fn transform(line: &mut [Complex<f64>]) {
     let points = line.len();
     if points.is_power_of_two() {
@@ -104,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn amplitudes_of_any_length_are_those_of_the_plain_sum() {
+    fn amplitudes_of_any_length_equal_the_plain_sum() {
         // Powers of two, primes, odd, even, and the shortest.
         for points in [16, 17, 18, 100, 127, 255, 256, 360, 1000, 1009, 2048, 3000, 4099] {
             let samples: Vec<f64> =
@@ -122,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn one_line_stays_one_line_whatever_the_length() {
+    fn a_sine_has_one_line_at_any_length() {
         for points in [16, 25, 97, 1000, 65_535] {
             let samples: Vec<f64> = (0..points)
                 .map(|i| 3.0 * libm::sin(TAU * f64::from(i * 5 % points) / f64::from(points)))

@@ -2,14 +2,28 @@
 //!
 //! ```text
 //! ideal   s(t)
-//!   | step quantisation: whole steps at whole cycles       `steps`   ideal against steps
+//!   | step quantization: whole steps at whole cycles       `steps`   ideal against steps
 //! steps   cycle = floor(t*clock_hz + 1/2)
-//!   | tick quantisation, the queue and the link            `ticks`   steps against pulses
+//!   | tick quantization, the queue and the link            `ticks`   steps against pulses
 //! pulses  rising STEP edges of the run                     `pulses`  ideal against pulses
 //! ```
 //!
 //! Times start with the first tick or the segment list; a comparison ends when all motion has ended. Areas and means are
 //! integrals of the curves.
+//!
+//! ```
+//! use stepscope_inspect::motion::{actual_motion::Pulses, measures::Measures};
+//! use stepscope_inspect::trace::stored_run::record_run;
+//! use stepscope_peripheral::trace::steps;
+//! use stepscope_sim::Experiment;
+//!
+//! let experiment = Experiment::from_json("{}").expect("it is valid");
+//! let (_, runs) = record_run(&experiment, 1).expect("it is short");
+//! let actual = steps(&runs[0].trace, 0);
+//! let pulses = Pulses::of_run(0, &actual, &runs[0].packets, None, experiment.config());
+//! let measures = Measures::of(&experiment.plans()[0], &pulses, None);
+//! assert_eq!(measures.peaks.speed_steps_s, 16_000.0);
+//! ```
 
 mod curve_metrics;
 mod pulse_errors;
@@ -17,16 +31,13 @@ mod pulse_errors;
 pub use curve_metrics::{CurveMetrics, POINTS};
 pub use pulse_errors::PulseErrors;
 
-use crate::motion::{
-    actual_motion::Pulses,
-    sine_polyline::{cosines, differences},
-};
+use crate::motion::actual_motion::Pulses;
+use crate::motion::sine_polyline::{cosines, differences};
 use alloc::vec::Vec;
 use curve_metrics::{Sums, curve_and_steps, steps_and_steps};
 use pulse_errors::{by_position, due_steps};
 use serde::Serialize;
-use stepscope_motion::ValueError;
-use stepscope_motion::{AxisPlan, Breakpoints, Profile, curves::SineSegments, moves::Axis};
+use stepscope_motion::{AxisPlan, Breakpoints, Profile, ValueError, curves::SineSegments, moves::Axis};
 use stepscope_peripheral::trace::Step;
 
 /// Maximum steps of a measured run; each takes about 82 bytes.
@@ -53,8 +64,11 @@ pub struct Measures {
     pub steps: CurveMetrics,
     /// Quantization to ticks, queue and link: scheduled steps compared with pulses.
     pub ticks: CurveMetrics,
+    /// Both: the ideal curve compared with pulses.
     pub pulses: CurveMetrics,
+    /// Scheduled steps compared with ideal times.
     pub step_errors: PulseErrors,
+    /// Pulses compared with scheduled steps.
     pub tick_errors: PulseErrors,
     pub counts: Counts,
     pub peaks: Extremes,
@@ -63,15 +77,17 @@ pub struct Measures {
     pub sine: Option<SineMeasures>,
 }
 
+/// Numbers of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Counts {
     pub due: u64,
-    /// Opposite steps within one tick cancel and are not counted.
+    /// Pulses; opposite steps within one tick cancel.
     pub actual: u64,
     /// Pulses without a step of that position and direction near that time.
     pub stray: u64,
 }
 
+/// Peaks of the ideal motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Extremes {
     pub speed_steps_s: f64,
@@ -79,7 +95,7 @@ pub struct Extremes {
     pub jerk_steps_s3: f64,
     pub speed_jump_steps_s: f64,
     pub acceleration_jump_steps_s2: f64,
-    /// Maximum speed that starts or ends at standstill without a ramp. A reversal is a stop and a start.
+    /// Maximum jump of speed from or to standstill. A reversal is a stop and a start.
     pub start_stop_steps_s: f64,
 }
 
@@ -87,11 +103,12 @@ pub struct Extremes {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Duration {
     pub planned_s: f64,
-    /// `None` where no move has a requested time; other moves count as planned.
+    /// `None` if no move has a requested time; other moves count as planned.
     pub requested_s: Option<f64>,
     pub plan_error_s: Option<f64>,
     pub last_due_s: Option<f64>,
     pub last_pulse_s: Option<f64>,
+    /// Last pulse less last scheduled step.
     pub end_error_s: Option<f64>,
 }
 
@@ -145,19 +162,19 @@ impl Measures {
 }
 
 fn requested_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
-    let names_one = axis.moves.iter().any(|requested| requested.requested_s().is_some());
+    let has_time = axis.moves.iter().any(|requested| requested.requested_s().is_some());
     let times = axis.moves.iter().zip(plan.moves());
-    // In the order of the plan, so that equal times give equal sums.
+    // In the order of the plan, so that the sum of equal times is equal.
     let sum = times.fold(0.0, |sum, (requested, planned)| {
         sum + requested.requested_s().unwrap_or_else(|| planned.profile.duration_s())
     });
-    names_one.then_some(sum)
+    has_time.then_some(sum)
 }
 
 fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints) -> Extremes {
     let peaks = plan.peaks();
     let (mut before, mut start_stop) = (0.0, 0.0);
-    let mut meets = |before: f64, after: f64| {
+    let mut note_change = |before: f64, after: f64| {
         if before * after <= 0.0 {
             start_stop = libm::fmax(start_stop, libm::fmax(libm::fabs(before), libm::fabs(after)));
         }
@@ -166,17 +183,17 @@ fn extremes(plan: &AxisPlan, breakpoints: &Breakpoints) -> Extremes {
         // Just inside: at a breakpoint the speed is that of one side only.
         let inset = (interval.to_s - interval.from_s) * 1e-9;
         let speed = |t: f64, by: f64| plan.speed(t) + plan.acceleration(t) * by;
-        meets(before, speed(interval.from_s + inset, -inset));
+        note_change(before, speed(interval.from_s + inset, -inset));
         before = speed(interval.to_s - inset, inset);
     });
-    meets(before, 0.0);
+    note_change(before, 0.0);
     Extremes {
         speed_steps_s: peaks.speed,
         acceleration_steps_s2: peaks.acceleration,
         jerk_steps_s3: peaks.jerk,
         speed_jump_steps_s: peaks.jump,
         acceleration_jump_steps_s2: peaks.acceleration_jump,
-        // A curve that starts at speed 0 leaves only rounding here.
+        // For a curve that starts at speed 0 this is only rounding.
         start_stop_steps_s: if start_stop > 1e-9 * peaks.speed { start_stop } else { 0.0 },
     }
 }

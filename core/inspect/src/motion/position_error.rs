@@ -1,10 +1,11 @@
 //! Position difference of two runs.
 //!
-//! Positions stay from step to step, so the difference changes only at steps; both are 0 before their first step.
+//! Positions are constant between steps, so the difference changes only at steps. Both are 0 before the first step.
 
 use crate::motion::curves::{Band, Window};
 use stepscope_peripheral::trace::Step;
 
+/// The steps of a run in another unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Scaled<'a> {
     pub steps: &'a [Step],
@@ -65,31 +66,31 @@ impl<'a> Difference<'a> {
 /// Minimum and maximum difference per column; NaN outside the common time.
 pub fn difference(first: Scaled<'_>, second: Scaled<'_>, common_s: f64, window: Window) -> Band {
     let mut band = Band::new(window.columns);
-    let mut walk = Difference::from([first, second], window.start_s);
+    let mut positions = Difference::from([first, second], window.start_s);
     for column in 0..window.columns {
         if window.edge_s(column) >= common_s {
             break;
         }
-        band.take(column, walk.now());
-        walk.changes(window.edge_s(column + 1), &mut |_, [a, b]| band.take(column, a - b));
+        band.take(column, positions.now());
+        positions.changes(window.edge_s(column + 1), &mut |_, [a, b]| band.take(column, a - b));
     }
     band
 }
 
-/// How far two runs' positions are apart, in their unit.
+/// The difference of two runs' positions, in their unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Apart {
+pub struct PositionError {
     pub largest: f64,
     pub at_s: f64,
     pub rms: f64,
 }
 
-/// Compares from 0 to `common_s`, which is above 0.
-pub fn apart(first: Scaled<'_>, second: Scaled<'_>, common_s: f64) -> Apart {
-    let mut walk = Difference::from([first, second], 0.0);
-    let (mut since_s, mut difference) = (0.0, walk.now());
+/// Compares two runs from 0 to `common_s`, which is above 0.
+pub fn compare(first: Scaled<'_>, second: Scaled<'_>, common_s: f64) -> PositionError {
+    let mut positions = Difference::from([first, second], 0.0);
+    let (mut since_s, mut difference) = (0.0, positions.now());
     let (mut largest, mut at_s, mut square) = (difference, 0.0, 0.0);
-    walk.changes(common_s, &mut |time_s, [a, b]| {
+    positions.changes(common_s, &mut |time_s, [a, b]| {
         let now = a - b;
         square += difference * difference * (time_s - since_s);
         (since_s, difference) = (time_s, now);
@@ -98,7 +99,7 @@ pub fn apart(first: Scaled<'_>, second: Scaled<'_>, common_s: f64) -> Apart {
         }
     });
     square += difference * difference * (common_s - since_s);
-    Apart { largest, at_s, rms: libm::sqrt(square / common_s) }
+    PositionError { largest, at_s, rms: libm::sqrt(square / common_s) }
 }
 
 #[cfg(test)]
@@ -149,14 +150,10 @@ mod tests {
                     assert!(band.min[column].is_nan() && band.max[column].is_nan());
                     continue;
                 }
-                let (least, max) = inside.fold((f64::MAX, f64::MIN), |(a, b), d| (a.min(d), b.max(d)));
-                assert_eq!(
-                    (band.min[column], band.max[column]),
-                    (least, max),
-                    "{first:?} {second:?} {column}"
-                );
+                let (min, max) = inside.fold((f64::MAX, f64::MIN), |(a, b), d| (a.min(d), b.max(d)));
+                assert_eq!((band.min[column], band.max[column]), (min, max), "{first:?} {second:?} {column}");
             }
-            let found = apart(first, second, common_s);
+            let found = compare(first, second, common_s);
             let (at_s, largest) = samples.iter().copied().fold((0.0, samples[0].1), |max, sample| {
                 if sample.1.abs() > max.1.abs() { sample } else { max }
             });
@@ -165,18 +162,5 @@ mod tests {
             assert_eq!((found.largest, found.at_s), (largest, at_s));
             assert!((found.rms - rms).abs() < 1e-12, "{} {rms}", found.rms);
         }
-    }
-
-    #[test]
-    fn two_runs_are_apart_by_a_step() {
-        use crate::motion::position_error::{Scaled, apart};
-        use stepscope_peripheral::trace::Step;
-
-        // Two runs that part at their second step.
-        let steps = |second| [(100, 1), (second, 2)].map(|(cycle, position)| Step { cycle, position });
-        let (one, other) = (steps(200), steps(300));
-        let scaled = |steps| Scaled { steps, hz: 1000.0, unit: 1.0 };
-        let apart = apart(scaled(&one), scaled(&other), 1.0);
-        assert_eq!((apart.largest, apart.at_s), (1.0, 0.2));
     }
 }

@@ -4,21 +4,26 @@
 //! guesses. Sums go in one order and functions come from `libm`, so the result has the same bits on every target. The
 //! minimum found may be local.
 
-use crate::motion::sine_polyline::{Distortion, OddCosines, Vertex, distortion, scale};
+use crate::motion::sine_polyline::{Distortion, OddMultiples, Vertex, distortion, odd_harmonics, scale};
 use alloc::{vec, vec::Vec};
 use core::f64::consts::FRAC_PI_2;
 
+/// Maximum segments per quarter.
 pub const MAX_SEGMENTS: usize = 32;
 const MAX_STEPS: u32 = 200;
 /// Exponents of cos(angle), the density of breakpoints of a first guess.
 const GUESSES: [f64; 4] = [0.4, 0.0, 0.7, 1.0];
 
+/// Where vertices may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
+    /// On the sine.
     OnCurve,
+    /// Anywhere.
     Free,
 }
 
+/// The polyline with minimum distortion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Optimum {
     /// From angle 0 to pi/2, scaled so that free vertices have a first harmonic of 1.
@@ -26,7 +31,7 @@ pub struct Optimum {
     pub distortion: Distortion,
 }
 
-/// `None` unless `segments` is 1 to [`MAX_SEGMENTS`]; harmonics count up to `order`.
+/// Finds the optimum for a number of segments per quarter. `None` unless `segments` is 1 to [`MAX_SEGMENTS`]; harmonics count up to `order`.
 pub fn optimum(segments: usize, freedom: Freedom, order: u16) -> Option<Optimum> {
     if !(1..=MAX_SEGMENTS).contains(&segments) {
         return None;
@@ -35,16 +40,12 @@ pub fn optimum(segments: usize, freedom: Freedom, order: u16) -> Option<Optimum>
     let best = found.reduce(|best, other| if other.cost < best.cost { other } else { best })?;
     let mut vertices = best.vertices;
     if freedom == Freedom::Free {
-        let first = harmonics(&vertices, 1).first().copied().unwrap_or(1.0);
+        let first = odd_harmonics(&vertices, 1).first().copied().unwrap_or(1.0);
         for vertex in &mut vertices {
             vertex.height /= first;
         }
     }
     Some(Optimum { distortion: distortion(&vertices, order), vertices })
-}
-
-fn harmonics(vertices: &[Vertex], order: u16) -> Vec<f64> {
-    super::sine_polyline::odd_harmonics(vertices, order)
 }
 
 struct Search {
@@ -68,7 +69,7 @@ impl Search {
             let before = self.cost;
             while damping < 1e12 {
                 let step = solve(damped(&matrix, damping), &slope);
-                if step.is_some_and(|step| self.go(&step)) {
+                if step.is_some_and(|step| self.try_step(&step)) {
                     damping /= 10.0;
                     break;
                 }
@@ -81,7 +82,8 @@ impl Search {
         self
     }
 
-    fn go(&mut self, step: &[f64]) -> bool {
+    /// Moves the vertices if that lowers the cost; returns whether it does.
+    fn try_step(&mut self, step: &[f64]) -> bool {
         let inner = self.vertices.len() - 2;
         let mut moved = self.vertices.clone();
         for (index, vertex) in moved.iter_mut().skip(1).take(inner).enumerate() {
@@ -101,9 +103,9 @@ impl Search {
         }
     }
 
-    /// J'J and -J'r.
+    /// Matrix and right-hand side: J'J and -J'r.
     fn normal_equations(&self) -> (Vec<Vec<f64>>, Vec<f64>) {
-        let harmonics = harmonics(&self.vertices, self.order);
+        let harmonics = odd_harmonics(&self.vertices, self.order);
         let first = harmonics.first().copied().unwrap_or(1.0);
         let columns = self.derivatives();
         // dr_k = (da_k - r_k*da_1)/a_1; the first harmonic has none.
@@ -140,6 +142,7 @@ impl Search {
         }
     }
 
+    /// Derivatives of the harmonics by the angle or the height of one vertex.
     fn derivative(&self, index: usize, by_angle: bool) -> Vec<f64> {
         let at =
             |index: usize| self.vertices.get(index).copied().unwrap_or(Vertex { angle: 0.0, height: 0.0 });
@@ -150,14 +153,15 @@ impl Search {
         let (gain_left, gain_right) =
             if by_angle { (-slope_left / left, slope_right / right) } else { (1.0 / left, -1.0 / right) };
         let bend = slope_left - slope_right;
-        let cosines =
-            OddCosines::of(before.angle).zip(OddCosines::of(this.angle)).zip(OddCosines::of(after.angle));
+        let cosines = OddMultiples::cosines(before.angle)
+            .zip(OddMultiples::cosines(this.angle))
+            .zip(OddMultiples::cosines(after.angle));
         let count = usize::from(self.order).div_ceil(2);
         // The last vertex's cosine is 0 for every odd k, but not after rounding.
         let last = index + 2 == self.vertices.len();
         cosines
             .take(count)
-            .zip(OddSines::of(this.angle))
+            .zip(OddMultiples::sines(this.angle))
             .enumerate()
             .map(|(harmonic, (((before, this), after), sine))| {
                 let after = if last { 0.0 } else { after };
@@ -167,29 +171,6 @@ impl Search {
                     * (-gain_left * before + (gain_left - gain_right) * this + gain_right * after - turn)
             })
             .collect()
-    }
-}
-
-struct OddSines {
-    now: f64,
-    before: f64,
-    twice: f64,
-}
-
-impl OddSines {
-    fn of(angle: f64) -> Self {
-        let now = libm::sin(angle);
-        Self { now, before: -now, twice: 2.0 * libm::cos(2.0 * angle) }
-    }
-}
-
-impl Iterator for OddSines {
-    type Item = f64;
-
-    fn next(&mut self) -> Option<f64> {
-        let now = self.now;
-        (self.now, self.before) = (self.twice * now - self.before, now);
-        Some(now)
     }
 }
 
@@ -259,7 +240,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_known_optima_of_3_to_6_segments_are_reached() {
+    fn known_optima_of_3_to_6_segments_are_reached() {
         let rows = [
             (3, Freedom::Free, 0.951),
             (4, Freedom::Free, 0.515),
@@ -283,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn more_segments_and_more_freedom_never_distort_more() {
+    fn more_segments_or_freedom_reduce_the_distortion() {
         let mut before = [f64::INFINITY; 2];
         for segments in 1..=12 {
             let found = [Freedom::OnCurve, Freedom::Free].map(|freedom| {
@@ -303,7 +284,7 @@ mod tests {
     fn an_optimum_is_better_than_its_neighbors() {
         for freedom in [Freedom::OnCurve, Freedom::Free] {
             let found = optimum(5, freedom, 399).unwrap();
-            let least = found.distortion.position;
+            let min = found.distortion.position;
             for index in 1..5 {
                 for (turn, lift) in [(1e-3, 0.0), (-1e-3, 0.0), (0.0, 1e-3), (0.0, -1e-3)] {
                     let mut vertices = found.vertices.clone();
@@ -314,19 +295,9 @@ mod tests {
                         vertices[index].height += lift;
                     }
                     let other = distortion(&vertices, 399).position;
-                    assert!(other >= least, "{freedom:?} {index} {turn} {lift}: {other} {least}");
+                    assert!(other >= min, "{freedom:?} {index} {turn} {lift}: {other} {min}");
                 }
             }
         }
-    }
-
-    #[test]
-    fn a_free_polyline_is_better_than_one_on_the_curve() {
-        use crate::motion::sine_optimum::{Freedom, optimum};
-
-        let on_curve = optimum(4, Freedom::OnCurve, 40).expect("there is one");
-        let free = optimum(4, Freedom::Free, 40).expect("there is one");
-        assert_eq!(free.vertices.len(), 5);
-        assert!(free.distortion.position < on_curve.distortion.position);
     }
 }

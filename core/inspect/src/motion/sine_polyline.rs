@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Nothing is sampled, so nothing aliases. Harmonics of the acceleration do not decrease, so its distortion grows with the
-//! order; a sensor of limited bandwidth removes that.
+//! order, unless a sensor limits the bandwidth.
 
 use alloc::vec::Vec;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -23,7 +23,7 @@ pub struct Vertex {
     pub height: f64,
 }
 
-/// Limits of a distortion; an order alone means no sensor.
+/// Limits of a distortion. Converts from an order, without a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Maximum harmonic, 1 to 65535.
@@ -71,7 +71,7 @@ pub fn odd_harmonics(vertices: &[Vertex], order: u16) -> Vec<f64> {
     let mut before = 0.0;
     for (at, next) in vertices.iter().zip(vertices.iter().skip(1)) {
         let slope = (next.height - at.height) / (next.angle - at.angle);
-        for (sum, cosine) in sums.iter_mut().zip(OddCosines::of(at.angle)) {
+        for (sum, cosine) in sums.iter_mut().zip(OddMultiples::cosines(at.angle)) {
             *sum += (before - slope) * cosine;
         }
         before = slope;
@@ -88,21 +88,26 @@ pub(crate) fn scale(index: usize) -> f64 {
     4.0 / (PI * k * k)
 }
 
-/// cos(k*angle) for k = 1, 3, 5, …, by recurrence.
-pub(crate) struct OddCosines {
+/// cos(k*angle) or sin(k*angle) for k = 1, 3, 5, …, by recurrence.
+pub(crate) struct OddMultiples {
     now: f64,
     before: f64,
     twice: f64,
 }
 
-impl OddCosines {
-    pub(crate) fn of(angle: f64) -> Self {
+impl OddMultiples {
+    pub(crate) fn cosines(angle: f64) -> Self {
         let now = libm::cos(angle);
         Self { now, before: now, twice: 2.0 * libm::cos(2.0 * angle) }
     }
+
+    pub(crate) fn sines(angle: f64) -> Self {
+        let now = libm::sin(angle);
+        Self { now, before: -now, twice: 2.0 * libm::cos(2.0 * angle) }
+    }
 }
 
-impl Iterator for OddCosines {
+impl Iterator for OddMultiples {
     type Item = f64;
 
     fn next(&mut self) -> Option<f64> {
@@ -112,6 +117,7 @@ impl Iterator for OddCosines {
     }
 }
 
+/// Distortion of a polyline over the harmonics up to the order.
 pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion {
     let Bounds { order, sensor } = bounds.into();
     let harmonics = odd_harmonics(vertices, order);
@@ -134,9 +140,12 @@ pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion 
     Distortion { position, speed, acceleration, acceleration_filtered }
 }
 
+/// A maximum deviation with its polyline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
+    /// Maximum deviation in parts of the amplitude.
     pub d1: f64,
+    /// Segments per quarter.
     pub segments: usize,
     pub distortion: Distortion,
     /// Euclidean distance of line and cosine over 512 points, in parts of the amplitude.
@@ -144,11 +153,13 @@ pub struct Row {
 }
 
 impl Row {
+    /// The row of one maximum deviation.
     pub fn of(d1: f64, bounds: impl Into<Bounds>) -> Self {
         Measure::new(bounds).row(d1)
     }
 }
 
+/// Computes rows with the same bounds.
 #[derive(Clone, Debug)]
 pub struct Measure {
     bounds: Bounds,
@@ -156,10 +167,12 @@ pub struct Measure {
 }
 
 impl Measure {
+    /// Rows with these bounds.
     pub fn new(bounds: impl Into<Bounds>) -> Self {
         Self { bounds: bounds.into(), cosines: cosines() }
     }
 
+    /// The row of one maximum deviation.
     pub fn row(&self, d1: f64) -> Row {
         self.of_points(d1, &breakpoints(d1))
     }
@@ -201,7 +214,7 @@ pub fn sweep(
     (0..count).map(move |index| measure.row(swept(from, to, count, index)))
 }
 
-/// The d1 of row `index` of a sweep, for workers that share it.
+/// The d1 of row `index` of a sweep, so that several workers can share it.
 pub fn swept(from: f64, to: f64, count: u32, index: u32) -> f64 {
     from + (to - from) * (f64::from(index) / f64::from(count.max(2) - 1))
 }
@@ -217,6 +230,7 @@ pub struct Distinct {
 }
 
 impl Distinct {
+    /// The polylines for `from..=to`.
     pub fn new(from: f64, to: f64, bounds: impl Into<Bounds>) -> Self {
         Self { next: Some(from), to, measure: Measure::new(bounds) }
     }
@@ -242,6 +256,7 @@ pub fn best(rows: impl IntoIterator<Item = Row>) -> Option<Row> {
     )
 }
 
+/// The row with minimum distortion of the position for each number of segments.
 pub fn best_of_each(rows: impl IntoIterator<Item = Row>) -> Vec<Row> {
     let mut all: Vec<Row> = Vec::new();
     for row in rows {
@@ -325,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn no_d1_of_a_range_gives_less_distortion_than_the_best_of_the_distinct_ones() {
+    fn no_row_of_a_sweep_is_better_than_the_best_distinct_polyline() {
         let (from, to) = (0.004, 0.02);
         let distinct: Vec<Row> = Distinct::new(from, to, 399).collect();
         assert!(distinct.windows(2).all(|pair| pair[0].d1 < pair[1].d1));
@@ -342,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sweep_begins_and_ends_where_it_is_to_and_deviation_costs_distance() {
+    fn a_sweep_covers_its_range() {
         let rows: Vec<Row> = sweep(0.001, 0.06, 60, 99).collect();
         assert_eq!((rows[0].d1, rows[59].d1), (0.001, 0.06));
         assert!(rows[59].euclidean > 10.0 * rows[0].euclidean);
@@ -351,15 +366,5 @@ mod tests {
         assert_eq!(sweep(0.006, 1.0, 1, 9).next().map(|row| row.d1), Some(0.006));
         let fine = Row::of(0.0, 9);
         assert_eq!((fine.segments, fine.euclidean), (512, 0.0));
-    }
-
-    #[test]
-    fn a_smaller_deviation_distorts_less() {
-        use crate::motion::sine_polyline::{distortion, vertices};
-
-        // The document's six segments a quarter, and their distortion of 0.269 % over very many harmonics.
-        let quarter = vertices(0.0054);
-        assert_eq!(quarter.len(), 7);
-        assert!((distortion(&quarter, 4000).position - 0.002_69).abs() < 0.000_02);
     }
 }

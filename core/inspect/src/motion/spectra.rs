@@ -1,16 +1,15 @@
 //! The spectra of an axis: ideal motion and actual pulses.
 
-use crate::motion::{
-    actual_motion::Pulses,
-    spectrum::{AnalysisWindow, Spectrum},
-};
+use crate::motion::actual_motion::Pulses;
+use crate::motion::spectrum::{AnalysisWindow, Spectrum};
 use alloc::{borrow::ToOwned, format, string::String};
 use stepscope_motion::AxisPlan;
 use stepscope_scenario::{Scenario, Source};
 
-/// Samples per harmonic; 16 keep the acceleration of a curve with corners within about 1 %.
-const FOLDING: u32 = 16;
+/// Samples per harmonic for which the acceleration of a curve with corners is exact to about 1 %.
+const MIN_SAMPLES_PER_HARMONIC: u32 = 16;
 
+/// Spectra of one axis.
 #[derive(Clone, Debug, Default)]
 pub struct Spectra {
     pub ideal: Option<Spectrum>,
@@ -26,7 +25,7 @@ impl Spectra {
         let window = plan.and_then(AnalysisWindow::of);
         let (Some(plan), Some(window)) = (plan, window) else {
             if let Source::Motion(_) = &scenario.source {
-                let note = format!("This controller has no axis {}; choose another one.", analysis.axis);
+                let note = format!("This controller has no axis {}; select another one.", analysis.axis);
                 return Self { note, ..Self::default() };
             }
             return Self::of_steps(scenario, run);
@@ -35,7 +34,7 @@ impl Spectra {
         let actual = Spectrum::of_pulses(&window.pulses_of(plan, run), window, analysis.max_harmonic);
         let note = if !window.periodic {
             "The motion is not periodic, so it has no harmonics and no THD.".to_owned()
-        } else if u32::from(analysis.max_harmonic) * FOLDING > analysis.fft_length {
+        } else if u32::from(analysis.max_harmonic) * MIN_SAMPLES_PER_HARMONIC > analysis.fft_length {
             format!(
                 "{} samples per period alias harmonics up to {}, mainly in the acceleration. Use more samples or a lower order.",
                 analysis.fft_length, analysis.max_harmonic
@@ -82,11 +81,11 @@ mod tests {
         let experiment = Experiment::new(&scenario).expect("no problems");
         let mut recording = Recording::default();
         experiment.run(&mut recording);
-        let made = steps(&recording.trace, 0);
+        let actual_steps = steps(&recording.trace, 0);
         let list = experiment.segments().and_then(|all| all.lists().first());
-        let planned = Pulses::of_run(0, &made, &recording.packets, list, experiment.config());
+        let planned = Pulses::of_run(0, &actual_steps, &recording.packets, list, experiment.config());
         let known = Spectra::of(&scenario, experiment.plans().first(), &planned).actual.expect("pulses");
-        let recorded = Pulses::recorded(0, &made, 16_000_000);
+        let recorded = Pulses::recorded(0, &actual_steps, 16_000_000);
         let other = Scenario { source: Source::Segments(Default::default()), ..scenario };
         let Spectra { ideal, actual, note } = Spectra::of(&other, None, &recorded);
         let found = actual.expect("pulses");
@@ -96,26 +95,7 @@ mod tests {
         assert!((thd(&found) / thd(&known) - 1.0).abs() < 0.01, "{} {}", thd(&found), thd(&known));
         let amplitude = found.position.amplitudes[0];
         assert!((amplitude / known.position.amplitudes[0] - 1.0).abs() < 1e-3, "{amplitude}");
-        let still = Spectra::of(&other, None, &Pulses::recorded(0, &made[..1], 16_000_000));
-        assert!(still.actual.is_none() && still.note.contains("fewer than two steps"));
-    }
-
-    #[test]
-    fn both_spectra_have_the_order_of_the_scenario() {
-        use crate::motion::{actual_motion::Pulses, spectra::Spectra};
-        use crate::trace::stored_run::Recording;
-        use stepscope_peripheral::trace::steps;
-        use stepscope_scenario::Scenario;
-        use stepscope_sim::Experiment;
-
-        let experiment = Experiment::from_json("{}").expect("the default motion");
-        let mut recording = Recording::default();
-        experiment.run(&mut recording);
-        let made = steps(&recording.trace, 0);
-        let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
-        let spectra = Spectra::of(&Scenario::default(), experiment.plans().first(), &pulses);
-        let lines =
-            |spectrum: Option<crate::motion::spectrum::Spectrum>| spectrum.map(|spectrum| spectrum.order);
-        assert_eq!((lines(spectra.ideal), lines(spectra.actual)), (Some(40), Some(40)));
+        let single_step = Spectra::of(&other, None, &Pulses::recorded(0, &actual_steps[..1], 16_000_000));
+        assert!(single_step.actual.is_none() && single_step.note.contains("fewer than two steps"));
     }
 }

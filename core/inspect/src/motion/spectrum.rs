@@ -9,21 +9,30 @@
 //! ```
 //!
 //! A motion that is not periodic is taken as a whole, less its straight line, and has no distortion.
+//!
+//! ```
+//! use stepscope_inspect::motion::spectrum::Spectrum;
+//! use stepscope_motion::{moves::{Axis, Move, SineSegments}, plan_axis};
+//!
+//! let axis = Axis { moves: vec![Move::SineSegments(SineSegments::default())], ..Axis::default() };
+//! let plan = plan_axis(&axis, "x").expect("it can be planned");
+//! let spectrum = Spectrum::ideal(&plan, 40, 4096).expect("it takes time");
+//! assert!(spectrum.position.distortion.expect("it is periodic") < 0.003); // THD below 0.3 %
+//! ```
 
 pub use crate::motion::analysis_window::AnalysisWindow;
 
-use crate::motion::{
-    analysis_window::sampled,
-    fourier::{amplitudes, magnitude, sums},
-    sine_polyline::low_pass,
-};
+use crate::motion::fourier::{amplitudes, magnitude, sums};
+use crate::motion::{analysis_window::sampled, sine_polyline::low_pass};
 use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};
 use stepscope_motion::AxisPlan;
 
+/// Amplitudes from the first harmonic on, and their distortion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Harmonics {
     pub amplitudes: Vec<f64>,
+    /// THD as a ratio; `None` if the motion is not periodic.
     pub distortion: Option<f64>,
 }
 
@@ -40,6 +49,7 @@ fn distortion(amplitudes: &[f64]) -> Option<f64> {
     (first > 0.0).then(|| libm::sqrt(square) / first)
 }
 
+/// The harmonics of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     pub window: AnalysisWindow,
@@ -117,7 +127,7 @@ mod tests {
     /// All harmonics of the paper's transform of 2048 points. The paper does not state its
     /// order; this is the one that gives its distortions to the last digit (up to the 40th harmonic
     /// they would be 0.26369 % and 0.26078 %).
-    const DOCUMENT_ORDER: u16 = 1023;
+    const PAPER_ORDER: u16 = 1023;
 
     fn plan(moves: Vec<Move>) -> AxisPlan {
         plan_axis(&Axis { moves, ..Axis::default() }, "axis").unwrap()
@@ -143,10 +153,10 @@ mod tests {
                 ..SineSegments::default()
             };
             let plan = plan(vec![Move::SineSegments(sine)]);
-            Spectrum::ideal(&plan, DOCUMENT_ORDER, 2048).unwrap().position
+            Spectrum::ideal(&plan, PAPER_ORDER, 2048).unwrap().position
         };
         let (first, second) = (harmonics(0.0054), harmonics(0.006));
-        assert_eq!(first.amplitudes.len(), usize::from(DOCUMENT_ORDER));
+        assert_eq!(first.amplitudes.len(), usize::from(PAPER_ORDER));
         close(first.distortion.unwrap() * 100.0, 0.26913, 2e-5);
         close(second.distortion.unwrap() * 100.0, 0.26710, 2e-5);
         let power = |harmonics: &Harmonics| harmonics.amplitudes[6] * harmonics.amplitudes[6];
@@ -157,7 +167,7 @@ mod tests {
     #[test]
     fn a_motion_of_many_steps_has_the_spectrum_of_its_polyline() {
         let plan = plan(vec![Move::Dwell(Dwell { duration_s: 0.3 }), sine(-5e5, 0.006)]);
-        let spectrum = Spectrum::ideal(&plan, DOCUMENT_ORDER, 2048).unwrap();
+        let spectrum = Spectrum::ideal(&plan, PAPER_ORDER, 2048).unwrap();
         assert_eq!((spectrum.window.start_s, spectrum.window.periods, spectrum.order), (0.3, 4, 1023));
         close(spectrum.position.distortion.unwrap() * 100.0, 0.26710, 1e-3);
         close(spectrum.position.amplitudes[0], 5e5, 1e-2);
@@ -263,12 +273,13 @@ mod tests {
             due = now;
         }
         let ideal = Spectrum::ideal(&plan, 40, 4096).unwrap();
-        let made = Spectrum::of_pulses(&pulses, ideal.window, 40);
-        close(made.position.amplitudes[0], ideal.position.amplitudes[0], 1e-5);
-        close(made.position.distortion.unwrap(), ideal.position.distortion.unwrap(), 0.02);
+        let actual = Spectrum::of_pulses(&pulses, ideal.window, 40);
+        close(actual.position.amplitudes[0], ideal.position.amplitudes[0], 1e-5);
+        close(actual.position.distortion.unwrap(), ideal.position.distortion.unwrap(), 0.02);
     }
+
     #[test]
-    fn of_ticks_that_moves_share_each_pulse_is_of_one() {
+    fn pulses_in_a_shared_tick_belong_to_one_move() {
         // Ticks of 1 ms: a constant of 4 steps until 2 ms, or 2.5 ms, then the sine.
         let run = |steps: f64, speed: f64, sine_steps: f64, pulses: &[(u64, i8)]| {
             let constant = Move::Constant(Constant {
@@ -283,44 +294,30 @@ mod tests {
             };
             let plan = plan(vec![constant.clone(), Move::SineSegments(sine), constant]);
             let window = AnalysisWindow::of(&plan).unwrap();
-            let own = window.own_pulses(&plan, TickClock::new(1000, 1_000_000), pulses);
+            let own = window.pulses_of_moves(&plan, TickClock::new(1000, 1_000_000), pulses);
             own.iter().map(|(t, direction)| (round_half_up(t * 1e6) as u64, *direction)).collect::<Vec<_>>()
         };
-        // On the grid nothing is shared. The sine goes 2 steps a tick: left in two, right in two.
+        // On the grid nothing is shared. The sine makes 2 steps per tick: left in two ticks, right in two.
         let there = |tick: u64, direction: i8| [(tick * 1000, direction), (tick * 1000 + 500, direction)];
         let sine: Vec<(u64, i8)> =
             [there(2, -1), there(3, -1), there(4, 1), there(5, 1)].into_iter().flatten().collect();
         let all: Vec<(u64, i8)> =
             [there(0, 1), there(1, 1)].into_iter().flatten().chain(sine.clone()).chain(there(6, 1)).collect();
         assert_eq!(run(4.0, 2000.0, 2.0, &all), sine);
-        // Left, and half a tick later: the second pulse of tick 2 is the sine's. What the sine and
-        // the move after it ask of tick 6 cancels.
+        // Left, and half a tick later: the second pulse of tick 2 is the sine's. Opposite steps of
+        // the sine and the next move in tick 6 cancel.
         let all: Vec<(u64, i8)> = [(0, -1), (1, -1), (2, -1), (3, -1), (5, 1)]
             .into_iter()
             .flat_map(|(tick, direction)| there(tick, direction))
             .collect();
         assert_eq!(run(-5.0, 2000.0, 2.0, &all), all[5..]);
-        // The other way round: tick 2 cancels, of tick 6 the first pulse is the sine's.
+        // In the opposite direction: tick 2 cancels, of tick 6 the first pulse is the sine's.
         let all: Vec<(u64, i8)> = [(0, -1), (1, -1), (3, 1), (5, -1), (6, -1)]
             .into_iter()
             .flat_map(|(tick, direction)| there(tick, direction))
             .collect();
         assert_eq!(run(-5.0, 2000.0, -2.0, &all), all[4..9]);
-        // A tick too many pulses, as of a broken line: the others' stay the others'.
+        // A tick with too many pulses, as after line errors: pulses of other moves are not taken.
         assert_eq!(run(-5.0, 2000.0, -2.0, &[(2500, 1), (2600, -1), (6500, 1)]), [(2500, 1)]);
-    }
-
-    #[test]
-    fn the_spectrum_of_a_sine_is_its_first_harmonic() {
-        use crate::motion::spectrum::Spectrum;
-        use stepscope_motion::{
-            moves::{Axis, Move, SineSegments},
-            plan_axis,
-        };
-
-        let axis = Axis { moves: vec![Move::SineSegments(SineSegments::default())], ..Axis::default() };
-        let plan = plan_axis(&axis, "x").expect("it can be planned");
-        let spectrum = Spectrum::ideal(&plan, 40, 4096).expect("it takes time");
-        assert!(spectrum.position.distortion.is_some_and(|distortion| distortion < 0.003));
     }
 }

@@ -1,12 +1,11 @@
-//! Acceleration of steps without a plan: between two runs of eight steps, because rounding to cycles dominates from
-//! step to step.
+//! Acceleration of steps without a plan: from two groups of eight steps, because rounding to cycles dominates between
+//! single steps.
 
 use stepscope_peripheral::trace::Step;
 
 pub(crate) const HALF: usize = 8;
 
-/// Signed, in steps/s^2, at a step; `None` without eight steps in one direction on both sides, or if eight share a
-/// cycle.
+/// Signed, in steps/s^2, at a step; `None` unless eight steps on both sides have one direction and take time.
 pub(crate) fn of(steps: &[Step], middle: usize, hz: f64) -> Option<f64> {
     let [from, at, to] =
         [middle.checked_sub(HALF)?, middle, middle.checked_add(HALF)?].map(|index| steps.get(index));

@@ -23,6 +23,16 @@
 //!
 //! Needed is inertia times acceleration plus the load's torque, which opposes the motion. Braking is compared with
 //! the same curve, which is on the safe side. Jumps of speed have no finite torque; [`Demand::jump`] reports them.
+//!
+//! ```
+//! use stepscope_inspect::motion::torque::{Demand, Machine};
+//! use stepscope_motion::{motor::Motor, moves::Axis, plan_axis};
+//!
+//! let axis = Axis { motor: Some(Motor::default()), ..Axis::default() }; // one turn in 0.4 s
+//! let machine = Machine::of(&axis).expect("it has a motor");
+//! let demand = Demand::of(&machine, &plan_axis(&axis, "x").expect("it can be planned"));
+//! assert!(demand.is_met() && demand.min_margin.expect("it takes time").margin_mn_m() > 100.0);
+//! ```
 
 mod machine;
 mod moment;
@@ -45,7 +55,7 @@ const SAMPLES_PER_MOVE: u32 = 2048;
 /// Samples per plan, in addition to both sides of each breakpoint.
 const SAMPLES: f64 = 512.0;
 
-/// A time in which a plan needs more torque than there is.
+/// A time in which a plan needs more torque than is available.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Shortage {
     pub from_s: f64,
@@ -56,19 +66,21 @@ pub struct Shortage {
 }
 
 /// The torque and rate that a plan or a list of steps requires.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Demand {
     pub shortages: Vec<Shortage>,
     pub total: u64,
-    /// The moment with the minimum margin; `None` where the plan takes no time.
-    pub least: Option<Moment>,
-    pub greatest_rate: f64,
+    /// The moment with the minimum margin; `None` if the plan takes no time.
+    pub min_margin: Option<Moment>,
+    pub max_rate: f64,
     /// The maximum rate, if it exceeds the motor's working rate.
     pub over_working_rate: Option<f64>,
+    /// The maximum jump of speed in steps/s.
     pub jump: f64,
 }
 
 impl Demand {
+    /// The demand of a plan.
     pub fn of(machine: &Machine, plan: &AxisPlan) -> Self {
         let peaks = plan.peaks();
         let mut found = Shortages::new(peaks.speed, peaks.jump);
@@ -85,12 +97,11 @@ impl Demand {
         found.finish(machine)
     }
 
-    /// The problem of the move from `from_s` to `to_s` with `peak_rate` steps/s, and how to fix it; `None` if the torque
-    /// suffices.
+    /// The problem of the move from `from_s` to `to_s` with `peak_rate` steps/s, and its fix; `None` without one.
     pub fn warning(&self, machine: &Machine, from_s: f64, to_s: f64, peak_rate: f64) -> Option<String> {
         if let Some(max) = machine.working_rate().filter(|max| peak_rate > *max) {
             return Some(format!(
-                "{} steps/s are above the motor's working rate of {}; give more time, or shorter ramps",
+                "{} steps/s exceed the motor's working rate of {}; use more time or shorter ramps",
                 grouped(peak_rate),
                 grouped(max)
             ));
@@ -100,7 +111,7 @@ impl Demand {
             .map(|found| found.worst)
             .reduce(|worst, other| if other.margin_mn_m() < worst.margin_mn_m() { other } else { worst })?;
         Some(format!(
-            "too little torque: {:.1} mN*m needed of {:.1} at {:.4} s and {} steps/s; give more time, gentler ramps, less load or a higher supply voltage",
+            "too little torque: {:.1} mN*m needed of {:.1} at {:.4} s and {} steps/s; use more time, longer ramps, less load or a higher supply voltage",
             libm::fabs(worst.needed_mn_m),
             worst.available_mn_m,
             worst.at_s,
@@ -114,8 +125,7 @@ impl Demand {
     }
 }
 
-/// Maximum torque in mN*m that a plan needs in each of `bins` ranges of the rate up to `max_rate` steps/s; NaN for unused
-/// rates.
+/// Maximum torque in mN*m that a plan needs in each of `bins` ranges of the rate; NaN for unused rates.
 pub fn needed_over_rate(machine: &Machine, plan: &AxisPlan, max_rate: f64, bins: usize) -> Vec<f64> {
     let mut needed = alloc::vec![f64::NAN; bins];
     for planned in plan.moves() {
@@ -137,24 +147,16 @@ struct Shortages {
 }
 
 impl Shortages {
-    fn new(greatest_rate: f64, jump: f64) -> Self {
-        let demand = Demand {
-            shortages: Vec::new(),
-            total: 0,
-            least: None,
-            greatest_rate,
-            over_working_rate: None,
-            jump,
-        };
-        Self { demand, open: None }
+    fn new(max_rate: f64, jump: f64) -> Self {
+        Self { demand: Demand { max_rate, jump, ..Demand::default() }, open: None }
     }
 
     /// Adds a moment whose interval ends at `to_s`. `border_s` gives the time since the last moment at which the
     /// margin changed its sign.
     fn add(&mut self, moment: Moment, to_s: f64, times: f64, border_s: impl FnOnce() -> f64) {
         let margin = moment.margin_mn_m();
-        if self.demand.least.is_none_or(|least| margin < least.margin_mn_m()) {
-            self.demand.least = Some(moment);
+        if self.demand.min_margin.is_none_or(|min| margin < min.margin_mn_m()) {
+            self.demand.min_margin = Some(moment);
         }
         match (&mut self.open, margin < 0.0) {
             (None, false) => {}
@@ -184,7 +186,7 @@ impl Shortages {
 
     fn finish(mut self, machine: &Machine) -> Demand {
         self.close();
-        let rate = self.demand.greatest_rate;
+        let rate = self.demand.max_rate;
         self.demand.over_working_rate = machine.working_rate().filter(|max| rate > *max).map(|_| rate);
         self.demand
     }

@@ -1,8 +1,6 @@
-//! The meaning of each byte of a packet, frame or reply (DESIGN A5, A6): fields with their positions, and a one-line
-//! summary.
+//! Dissects packets, frames and replies (DESIGN A5, A6) into fields with their bytes, and into a one-line summary.
 //!
-//! COBS replaces each zero, so a decoded byte has one position on the line. The bytes that COBS adds are fields of
-//! their own.
+//! COBS replaces each zero, so every decoded byte is one byte on the line. The bytes that COBS adds are fields, too.
 
 mod summary;
 
@@ -11,72 +9,81 @@ pub use summary::write_steps;
 use crate::packets::log::RowOutcome;
 use alloc::{borrow::Cow, format, string::String, vec::Vec};
 use core::ops::Range;
-use stepscope_peripheral::{
-    config::Protocol,
-    device::Faults,
-    protocol::{FrameOutcome, Kind, Reason, Reply},
-    signal::Positions,
-    wire::{
-        cobs::CobsDecoder,
-        frame::{ACK, CHECK, CRC_LEN, DELIMITER, Frame, NAK, POSITION_LEN, STATUS_LEN, Ticks},
-        packet::{ALL, ChannelCommand},
-    },
+use stepscope_peripheral::protocol::{FrameOutcome, Kind, Reason, Reply};
+use stepscope_peripheral::wire::cobs::CobsDecoder;
+use stepscope_peripheral::wire::frame::{
+    ACK, CHECK, CRC_LEN, DELIMITER, Frame, NAK, POSITION_LEN, STATUS_LEN, Ticks,
 };
+use stepscope_peripheral::wire::packet::{ALL, ChannelCommand};
+use stepscope_peripheral::{config::Protocol, device::Faults, signal::Positions};
 
+/// A field of a packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     pub name: Cow<'static, str>,
+    /// Its bytes, counted from the start of the packet.
     pub bytes: Range<usize>,
     pub value: String,
 }
 
+/// The CRC of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Check {
+pub enum CrcCheck {
+    /// Raw packets have no CRC.
     None,
+    /// The frame is incomplete.
     Missing,
-    Compared { found: u32, expected: u32 },
+    Compared {
+        found: u32,
+        expected: u32,
+    },
 }
 
+/// The fields of a packet, in ascending order of bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Meaning {
+pub struct Dissection {
     pub fields: Vec<Field>,
-    pub check: Check,
+    pub crc: CrcCheck,
 }
 
+/// Dissects the packets of one line.
 #[derive(Clone, Copy)]
-pub struct Reading<'a> {
+pub struct Dissector<'a> {
     pub protocol: Protocol,
     /// Whether raw packets begin with an address.
     pub addressed: bool,
+    /// The number of channels of the controller with an address.
     pub channels: &'a dyn Fn(u8) -> u8,
 }
 
 /// Address and kind of a frame with a valid CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Head {
+pub struct FrameHead {
     pub address: u8,
     pub kind: u8,
 }
 
-impl Head {
-    /// `None` where the bytes are no valid frame.
+impl FrameHead {
+    /// `None` if the bytes are not a valid frame.
     pub fn of(bytes: &[u8], outcome: RowOutcome) -> Option<Self> {
-        let untrusted = [FrameOutcome::Short, FrameOutcome::Overlong];
         match outcome {
             RowOutcome::Reply(reply) => {
                 let kind = reply.result.map_or(NAK, |kind| kind as u8 | ACK);
                 return Some(Self { address: reply.address, kind });
             }
-            RowOutcome::Frame(FrameOutcome::BadCrc { .. }) => return None,
-            RowOutcome::Frame(outcome) if !untrusted.contains(&outcome) => {}
+            RowOutcome::Frame(FrameOutcome::BadCrc { .. } | FrameOutcome::Short | FrameOutcome::Overlong) => {
+                return None;
+            }
+            RowOutcome::Frame(_) => {}
             _ => return None,
         }
-        let mut reader = CobsDecoder::default();
+        let mut decoder = CobsDecoder::default();
         let mut content =
-            bytes.get(last_frame(bytes))?.iter().filter_map(|&byte| reader.byte(byte).content(byte));
+            bytes.get(last_frame(bytes))?.iter().filter_map(|&byte| decoder.byte(byte).content(byte));
         Some(Self { address: content.next()?, kind: content.next()? })
     }
 
+    /// Whether a controller sent it.
     pub const fn is_reply(self) -> bool {
         self.kind & ACK != 0
     }
@@ -87,81 +94,87 @@ impl Head {
     }
 }
 
-/// The frame within its row, without delimiters.
+/// The frame within its row, without_crc delimiters.
 fn last_frame(bytes: &[u8]) -> Range<usize> {
     let end = bytes.len() - usize::from(bytes.last() == Some(&DELIMITER));
     let before = bytes.get(..end).and_then(|bytes| bytes.iter().rposition(|&byte| byte == DELIMITER));
     before.map_or(0, |mark| mark + 1)..end
 }
 
-impl Reading<'_> {
-    /// The fields of a row. A frame with a wrong CRC is read as if it were valid.
-    pub fn of(&self, bytes: &[u8], outcome: RowOutcome) -> Meaning {
+impl Dissector<'_> {
+    /// Dissects a row. A frame with a wrong CRC is dissected as if it were valid.
+    pub fn dissect(&self, bytes: &[u8], outcome: RowOutcome) -> Dissection {
         match (self.protocol, outcome) {
             (_, RowOutcome::Ignored) => {
                 let ignored = (!bytes.is_empty()).then(|| field("ignored", 0..bytes.len(), "until a gap"));
-                Meaning { fields: ignored.into_iter().collect(), check: Check::None }
+                Dissection { fields: ignored.into_iter().collect(), crc: CrcCheck::None }
             }
             // A raw line may have a recorded reply.
             (Protocol::Framed, _) | (_, RowOutcome::Reply(_)) => self.framed(bytes),
-            (_, RowOutcome::Recorded) => Meaning { fields: Vec::new(), check: Check::None },
-            (Protocol::Raw, _) => Meaning { fields: raw(bytes, self.addressed), check: Check::None },
+            (_, RowOutcome::Recorded) => Dissection { fields: Vec::new(), crc: CrcCheck::None },
+            (Protocol::Raw, _) => {
+                Dissection { fields: raw_fields(bytes, self.addressed), crc: CrcCheck::None }
+            }
         }
     }
 
-    fn framed(&self, bytes: &[u8]) -> Meaning {
+    fn framed(&self, bytes: &[u8]) -> Dissection {
         let range = last_frame(bytes);
         let mut fields = Vec::new();
         if range.start > 0 {
-            fields.push(field("before it", 0..range.start, "no part of the frame"));
+            fields.push(field("preceding bytes", 0..range.start, "not part of the frame"));
         }
         let content = Content::of(bytes, range.clone());
-        let check = content.check();
-        let mut meant = content.fields(check, self.channels);
+        let crc = content.crc();
+        let mut content_fields = content.fields(crc, self.channels);
         for &(at, code) in &content.overhead {
             // COBS bytes within a body belong to the body.
-            if !meant.iter().any(|field| field.bytes.contains(&at)) {
-                let range = meant.partition_point(|field| field.bytes.start < at);
-                meant.insert(range, field("COBS", at..at + 1, cobs_to_text(code)));
+            if !content_fields.iter().any(|field| field.bytes.contains(&at)) {
+                let index = content_fields.partition_point(|field| field.bytes.start < at);
+                content_fields.insert(index, field("COBS", at..at + 1, cobs_to_text(code)));
             }
         }
-        fields.extend(meant);
+        fields.extend(content_fields);
         if range.end < bytes.len() {
-            fields.push(field("end mark", range.end..bytes.len(), "00"));
+            fields.push(field("delimiter", range.end..bytes.len(), "00"));
         }
-        Meaning { fields, check }
+        Dissection { fields, crc }
     }
 }
 
+/// The reply in a row, if its CRC is valid.
 #[cfg(feature = "std")]
-pub(crate) fn reply(bytes: &[u8]) -> Option<Reply> {
+pub(crate) fn parse_reply(bytes: &[u8]) -> Option<Reply> {
     let content = Content::of(bytes, last_frame(bytes));
-    let check @ Check::Compared { found, expected } = content.check() else { return None };
-    let [address, kind, body @ ..] = content.without(check) else { return None };
+    let crc @ CrcCheck::Compared { found, expected } = content.crc() else { return None };
+    let [address, kind, body @ ..] = content.without_crc(crc) else { return None };
     if found == expected { Reply::parse(Frame { address: *address, kind: *kind, body }) } else { None }
 }
 
 /// The decoded frame, and whether its COBS is complete.
 pub(crate) fn decoded(bytes: &[u8]) -> (Vec<u8>, bool) {
-    let Content { decoded, whole, .. } = Content::of(bytes, last_frame(bytes));
-    (decoded, whole)
+    let Content { decoded, is_complete, .. } = Content::of(bytes, last_frame(bytes));
+    (decoded, is_complete)
 }
 
+/// A frame without_crc COBS.
 struct Content {
     decoded: Vec<u8>,
+    /// Position of each decoded byte on the line, and the end.
     offsets: Vec<usize>,
+    /// Bytes that COBS added, with their positions.
     overhead: Vec<(usize, u8)>,
-    whole: bool,
+    is_complete: bool,
 }
 
 impl Content {
     fn of(bytes: &[u8], range: Range<usize>) -> Self {
         let mut content =
-            Self { decoded: Vec::new(), offsets: Vec::new(), overhead: Vec::new(), whole: true };
-        let mut reader = CobsDecoder::default();
+            Self { decoded: Vec::new(), offsets: Vec::new(), overhead: Vec::new(), is_complete: true };
+        let mut decoder = CobsDecoder::default();
         for at in range.clone() {
             let byte = bytes.get(at).copied().unwrap_or(DELIMITER);
-            match reader.byte(byte).content(byte) {
+            match decoder.byte(byte).content(byte) {
                 Some(decoded) => {
                     content.decoded.push(decoded);
                     content.offsets.push(at);
@@ -169,37 +182,38 @@ impl Content {
                 None => content.overhead.push((at, byte)),
             }
         }
-        content.whole = range.is_empty() || reader.is_complete();
+        content.is_complete = range.is_empty() || decoder.is_complete();
         content.offsets.push(range.end);
         content
     }
 
-    fn check(&self) -> Check {
+    fn crc(&self) -> CrcCheck {
         match self.decoded.split_last_chunk::<CRC_LEN>() {
-            Some((frame, sum)) if self.whole && frame.len() >= 2 => {
-                Check::Compared { found: u32::from_le_bytes(*sum), expected: CHECK.checksum(frame) }
+            Some((frame, sum)) if self.is_complete && frame.len() >= 2 => {
+                CrcCheck::Compared { found: u32::from_le_bytes(*sum), expected: CHECK.checksum(frame) }
             }
-            _ => Check::Missing,
+            _ => CrcCheck::Missing,
         }
     }
 
-    fn without(&self, check: Check) -> &[u8] {
-        let checked = if check == Check::Missing { 0 } else { CRC_LEN };
+    fn without_crc(&self, crc: CrcCheck) -> &[u8] {
+        let checked = if crc == CrcCheck::Missing { 0 } else { CRC_LEN };
         self.decoded.get(..self.decoded.len() - checked).unwrap_or_default()
     }
 
-    fn at(&self, decoded: Range<usize>) -> Range<usize> {
+    /// The bytes on the line of a range of decoded bytes.
+    fn line_range(&self, decoded: Range<usize>) -> Range<usize> {
         let last = decoded.end.checked_sub(1).and_then(|last| self.offsets.get(last));
         let first = self.offsets.get(decoded.start).copied().unwrap_or_default();
         first..last.map_or(first, |last| last + 1)
     }
 
-    fn fields(&self, check: Check, channels: &dyn Fn(u8) -> u8) -> Vec<Field> {
-        let content = self.without(check);
+    fn fields(&self, crc: CrcCheck, channels: &dyn Fn(u8) -> u8) -> Vec<Field> {
+        let content = self.without_crc(crc);
         let end = content.len();
         let mut fields = Vec::new();
         let mut add = |name: Cow<'static, str>, range: Range<usize>, value: String| {
-            fields.push(Field { name, bytes: self.at(range), value });
+            fields.push(Field { name, bytes: self.line_range(range), value });
         };
         if let Some(&address) = content.first() {
             add("address".into(), 0..1, address_to_text(address));
@@ -216,13 +230,13 @@ impl Content {
                 _ => add("body".into(), 2..end, format!("{} bytes", body.len())),
             }
         }
-        if let Check::Compared { found, expected } = check {
+        if let CrcCheck::Compared { found, expected } = crc {
             let value = if found == expected {
-                format!("{found:08x}, holds")
+                format!("{found:08x}, valid")
             } else {
-                format!("{found:08x} found, {expected:08x} expected")
+                format!("{found:08x}, expected {expected:08x}")
             };
-            add("check".into(), end..end + CRC_LEN, value);
+            add("CRC".into(), end..end + CRC_LEN, value);
         }
         fields
     }
@@ -234,10 +248,10 @@ fn ticks_fields(ticks: &Ticks<'_>, channels: u8, add: &mut Add<'_>) {
     add("seq".into(), 2..3, format!("{}", ticks.seq));
     add("count".into(), 3..4, format!("{}", ticks.count()));
     let channels = usize::from(channels.max(1));
-    for (range, &byte) in ticks.commands().iter().enumerate() {
-        let (tick, channel) = (range / channels, range % channels);
+    for (index, &byte) in ticks.commands().iter().enumerate() {
+        let (tick, channel) = (index / channels, index % channels);
         let name = if channels == 1 { format!("tick {tick}") } else { format!("tick {tick} ch{channel}") };
-        add(name.into(), 4 + range..5 + range, command_to_text(byte));
+        add(name.into(), 4 + index..5 + index, command_to_text(byte));
     }
 }
 
@@ -263,7 +277,7 @@ fn reply_fields(reply: &Reply, positions: Option<&Positions>, add: &mut Add<'_>)
     }
 }
 
-fn raw(bytes: &[u8], addressed: bool) -> Vec<Field> {
+fn raw_fields(bytes: &[u8], addressed: bool) -> Vec<Field> {
     let first = usize::from(addressed);
     let each = |(at, &byte): (usize, &u8)| match at.checked_sub(first) {
         None => field("address", 0..1, address_to_text(byte)),
@@ -279,7 +293,7 @@ fn field(name: impl Into<Cow<'static, str>>, bytes: Range<usize>, value: impl In
 fn cobs_to_text(code: u8) -> String {
     match code {
         1..=254 => format!("{} bytes to the next zero or the end", code - 1),
-        _ => "254 bytes without a zero".into(),
+        _ => "254 bytes without_crc a zero".into(),
     }
 }
 

@@ -1,33 +1,31 @@
-//! The line decoded into bits, bytes and fields: spans of cycles with texts from the longest to the shortest (DESIGN
-//! A4 to A6).
+//! Decodes the serial line into bits, bytes and fields (DESIGN A4 to A6), each with texts of several lengths.
 //!
-//! RX is decoded as the controller received it; what the host sent is shown where it differs.
+//! RX is decoded as the controller received it. Where a byte differs from the byte that the host sent, both are shown.
 
+use crate::packets::dissector::{CrcCheck, Field};
 use crate::packets::log::{PacketLog, RowOutcome};
-use crate::packets::{
-    dissector::{Check, Field},
-    packet_table::{LineByte, PacketTable},
-};
+use crate::packets::packet_table::{LineByte, PacketTable};
 use alloc::{borrow::ToOwned, format, string::String, string::ToString, vec, vec::Vec};
 use serde::Serialize;
-use stepscope_peripheral::{
-    config::Config,
-    signal::{Levels, Record},
-    trace::levels_at,
-    units::{Cycles, Instant},
-    wire::{BitTimes, bit_times::BYTE_BITS},
-};
+use stepscope_peripheral::signal::{Levels, Record};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::{BitTimes, bit_times::BYTE_BITS};
+use stepscope_peripheral::{config::Config, trace::levels_at};
 
+/// A bit, byte or field on the line, in cycles.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Span {
     pub start: u64,
     pub end: u64,
+    /// From the longest to the shortest.
     pub texts: Vec<String>,
     pub bad: bool,
     pub packet: Option<usize>,
+    /// Cycle in which a received bit is sampled.
     pub sample: Option<u64>,
 }
 
+/// The spans of one line, by kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Spans {
     pub bits: Vec<Span>,
@@ -35,14 +33,16 @@ pub struct Spans {
     pub fields: Vec<Span>,
 }
 
+/// A decoded range of cycles.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Decoded {
     pub rx: Spans,
     pub tx: Spans,
-    /// More bytes than requested: none are listed.
+    /// There are more bytes than requested, and none is listed.
     pub more: bool,
 }
 
+/// Decodes the line of one controller.
 #[derive(Clone, Copy)]
 pub struct LineDecoder<'a> {
     table: PacketTable<'a>,
@@ -50,12 +50,12 @@ pub struct LineDecoder<'a> {
 }
 
 impl<'a> LineDecoder<'a> {
+    /// A decoder of the packets of `table`, whose run has the records `trace`.
     pub const fn new(table: PacketTable<'a>, trace: &'a [Record]) -> Self {
         Self { table, trace }
     }
 
-    /// Decodes the cycles `start..end`, unless they have more than `max_bytes` bytes; bits only for at most
-    /// `max_bits` bytes.
+    /// Decodes the cycles `start..end`, if they have at most `max_bytes` bytes; bits only for up to `max_bits` bytes.
     pub fn decode(&self, start: u64, end: u64, max_bytes: usize, max_bits: usize) -> Decoded {
         let (mut rx, mut tx) = (Spans::default(), Spans::default());
         let Some(bytes) = self.bytes_in(start, end, max_bytes) else {
@@ -80,12 +80,12 @@ impl<'a> LineDecoder<'a> {
                 });
             }
         }
-        self.broken_in(start, end, &mut rx, with_bits);
+        self.framing_errors_in(start, end, &mut rx, with_bits);
         Decoded { rx, tx, more: false }
     }
 
-    fn own(&self) -> &'a Config {
-        self.table.own()
+    fn config(&self) -> &'a Config {
+        self.table.config()
     }
 
     fn packets(&self) -> &'a PacketLog {
@@ -95,10 +95,13 @@ impl<'a> LineDecoder<'a> {
     fn bytes_in(&self, start: u64, end: u64, max: usize) -> Option<Vec<LineByte>> {
         let mut bytes = Vec::new();
         for packet in self.packets().touching(Instant(start), Instant(end)) {
-            // A row may have megabytes: decode only what is visible.
-            let seen = self.packets().seen(packet);
-            let before =
-                if self.table.is_own_reply(packet) { 0 } else { seen.partition_point(|at| at.0 < start) };
+            // A row may have megabytes, so only visible bytes are decoded.
+            let start_bits = self.packets().start_bits(packet);
+            let before = if self.table.is_own_reply(packet) {
+                0
+            } else {
+                start_bits.partition_point(|at| at.0 < start)
+            };
             let placed = self
                 .table
                 .line_bytes_from(packet, before.saturating_sub(1))
@@ -123,15 +126,15 @@ impl<'a> LineDecoder<'a> {
         Span { start, end, texts, bad: sent.is_some(), packet: Some(packet), sample: None }
     }
 
-    fn received_bits(&self, seen: u64, packet: Option<usize>) -> Vec<Span> {
-        let Cycles(bit) = self.own().bit();
+    fn received_bits(&self, first: u64, packet: Option<usize>) -> Vec<Span> {
+        let Cycles(bit) = self.config().bit();
         (0..BYTE_BITS)
             .map(|index| {
-                let sample = seen + bit / 2 + index * bit;
+                let sample = first + bit / 2 + index * bit;
                 let high = levels_at(self.trace, Instant(sample)).has(Levels::RX);
                 Span {
-                    start: seen + index * bit,
-                    end: seen + (index + 1) * bit,
+                    start: first + index * bit,
+                    end: first + (index + 1) * bit,
                     texts: bit_texts(index, high),
                     bad: index == BYTE_BITS - 1 && !high,
                     packet,
@@ -143,7 +146,7 @@ impl<'a> LineDecoder<'a> {
 
     fn sent_bits(&self, placed: LineByte) -> Vec<Span> {
         let LineByte { packet, byte, start, .. } = placed;
-        let times = BitTimes::new(self.own().clock_hz(), self.own().reply_baud());
+        let times = BitTimes::new(self.config().clock_hz(), self.config().reply_baud());
         let bits = u16::from(byte) << 1 | 1 << (BYTE_BITS - 1);
         (0..BYTE_BITS)
             .map(|index| Span {
@@ -157,11 +160,11 @@ impl<'a> LineDecoder<'a> {
             .collect()
     }
 
-    fn broken_in(&self, start: u64, end: u64, rx: &mut Spans, with_bits: bool) {
-        let broken = self.packets().broken();
-        let length = BYTE_BITS * self.own().bit().0;
-        let first = broken.partition_point(|seen| seen.0 + length <= start);
-        for &Instant(seen) in broken.iter().skip(first).take_while(|seen| seen.0 < end) {
+    fn framing_errors_in(&self, start: u64, end: u64, rx: &mut Spans, with_bits: bool) {
+        let errors = self.packets().framing_errors();
+        let length = BYTE_BITS * self.config().bit().0;
+        let first = errors.partition_point(|seen| seen.0 + length <= start);
+        for &Instant(seen) in errors.iter().skip(first).take_while(|seen| seen.0 < end) {
             let sent = self.table.sent_at(Instant(seen));
             let sent = sent.map_or_else(String::new, |sent| format!(", sent as {sent:02x}"));
             let texts = vec![
@@ -189,30 +192,31 @@ fn bit_texts(index: u64, high: bool) -> Vec<String> {
     }
 }
 
-/// Maximum bytes of a row with fields; a frame has at most 600 before COBS.
+/// Maximum bytes of a row whose fields are shown; a frame has at most 600 before COBS.
 const MAX_BYTES: usize = 1024;
 
 impl LineDecoder<'_> {
     fn fields_of(&self, packet: usize) -> Vec<Span> {
         let Some(row) = self.packets().rows().get(packet) else { return Vec::new() };
-        // Longer rows are no packet or frame.
+        // A longer row is not a packet or frame.
         if self.packets().bytes(packet).len() > MAX_BYTES {
             return Vec::new();
         }
         let bytes = self.table.line_bytes(packet);
-        let Some(meaning) = self.table.meaning(packet) else { return Vec::new() };
-        let broken = matches!(meaning.check, Check::Compared { found, expected } if found != expected);
+        let Some(dissection) = self.table.dissect(packet) else { return Vec::new() };
+        let is_crc_wrong =
+            matches!(dissection.crc, CrcCheck::Compared { found, expected } if found != expected);
         let span =
             |start, end, texts, bad| Span { start, end, texts, bad, packet: Some(packet), sample: None };
-        let mut spans: Vec<Span> = meaning
+        let mut spans: Vec<Span> = dissection
             .fields
             .iter()
             .filter_map(|field| {
-                let carriers: &[LineByte] = bytes.get(field.bytes.clone())?;
+                let on_line: &[LineByte] = bytes.get(field.bytes.clone())?;
                 let bad = row.outcome == RowOutcome::Ignored
                     || field.name == "reason"
-                    || (broken && field.name == "check");
-                Some(span(carriers.first()?.start, carriers.last()?.end, texts(field, bad), bad))
+                    || (is_crc_wrong && field.name == "CRC");
+                Some(span(on_line.first()?.start, on_line.last()?.end, texts(field, bad), bad))
             })
             .collect();
         if let (RowOutcome::Short, Some(last)) = (row.outcome, bytes.last()) {

@@ -2,13 +2,12 @@
 
 use alloc::{collections::VecDeque, vec::Vec};
 use core::fmt;
-use stepscope_peripheral::{
-    protocol::{FrameOutcome, Kind, Reply},
-    signal::{Event, PacketOutcome, Record, Sink},
-    units::{Cycles, Instant},
-    wire::packet::Tick,
-};
+use stepscope_peripheral::protocol::{FrameOutcome, Kind, Reply};
+use stepscope_peripheral::signal::{Event, PacketOutcome, Record, Sink};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::packet::Tick;
 
+/// What became of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowOutcome {
     Packet(PacketOutcome),
@@ -18,14 +17,15 @@ pub enum RowOutcome {
     Framing,
     /// Bytes that were ignored after a framing error.
     Ignored,
-    /// A frame, or bytes that are none.
+    /// A frame, or bytes that are not a valid frame.
     Frame(FrameOutcome),
     Reply(Reply),
-    /// Recorded on the controller's own line, but no known reply.
+    /// Recorded on the line of the controller's replies, but not a known reply.
     Recorded,
     /// Two senders at once.
     Collision,
-    Open,
+    /// The run ended before the packet was complete.
+    Incomplete,
 }
 
 impl fmt::Display for RowOutcome {
@@ -42,18 +42,19 @@ impl fmt::Display for RowOutcome {
             Self::Ignored => "ignored until a gap",
             Self::Frame(frame) => return frame.fmt(f),
             Self::Reply(reply) => return reply.fmt(f),
-            Self::Recorded => "recorded: no known reply",
+            Self::Recorded => "recorded: unknown reply",
             Self::Collision => "collision: the controller and another drive the line",
-            Self::Open => "not complete",
+            Self::Incomplete => "incomplete",
         })
     }
 }
 
+/// One row: a packet, frame, reply or collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LoggedPacket {
     /// Start bit of its first byte.
     pub start: Instant,
-    /// Complete or aborted.
+    /// When it was complete, or aborted.
     pub end: Instant,
     pub outcome: RowOutcome,
     /// First cycle of its first tick.
@@ -66,20 +67,23 @@ pub struct LoggedPacket {
     latest: Instant,
 }
 
+/// A reply of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordedReply<'a> {
     /// First start bit.
     pub start: Instant,
     pub end: Instant,
     pub bytes: &'a [u8],
+    /// `None` if the bytes are not a valid reply.
     pub reply: Option<Reply>,
 }
 
+/// A tick that the controller executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LoggedTick {
     pub start: Instant,
     pub commands: Tick,
-    /// `None` for a tick that firmware pushed.
+    /// Row of its packet; `None` for a tick that firmware pushed.
     pub row: Option<usize>,
 }
 
@@ -89,8 +93,8 @@ pub struct PacketLog {
     rows: Vec<LoggedPacket>,
     bytes: Vec<u8>,
     /// Start bit per byte; the bytes of a reply share the first.
-    seen: Vec<Instant>,
-    broken: Vec<Instant>,
+    start_bits: Vec<Instant>,
+    framing_errors: Vec<Instant>,
     open: Option<Instant>,
     last: Instant,
     ignoring: bool,
@@ -99,16 +103,16 @@ pub struct PacketLog {
     ticks: Vec<LoggedTick>,
     stops: Vec<Instant>,
     underruns: Vec<Instant>,
-    is_answered: bool,
+    has_recorded_replies: bool,
 }
 
 impl PacketLog {
-    /// In the order of their starts once the log is finished; before, a reply precedes its start, and a collision its
-    /// packet.
+    /// In the order of their starts once the log is finished; before that, replies and collisions come too early.
     pub fn rows(&self) -> &[LoggedPacket] {
         &self.rows
     }
 
+    /// All ticks, in the order of their starts.
     pub fn ticks(&self) -> &[LoggedTick] {
         &self.ticks
     }
@@ -119,34 +123,35 @@ impl PacketLog {
         stop.map_or(tick.start + length, |stop| (tick.start + length).min(*stop))
     }
 
+    /// The bytes of row `index`.
     pub fn bytes(&self, index: usize) -> &[u8] {
         let row = self.rows.get(index);
         row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
     }
 
     /// Start bits of a row's bytes; those of a reply share the first.
-    pub fn seen(&self, index: usize) -> &[Instant] {
+    pub fn start_bits(&self, index: usize) -> &[Instant] {
         let row = self.rows.get(index);
-        row.and_then(|row| self.seen.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
+        row.and_then(|row| self.start_bits.get(row.bytes_start..row.bytes_end)).unwrap_or_default()
     }
 
-    /// Start bits of bytes with a framing error, rising.
-    pub fn broken(&self) -> &[Instant] {
-        &self.broken
+    /// Start bits of bytes with a framing error, in ascending order.
+    pub fn framing_errors(&self) -> &[Instant] {
+        &self.framing_errors
     }
 
-    /// Ends of ticks with steps that none followed (fault UNDERRUN), rising.
+    /// Ends of ticks with steps that no tick followed (fault UNDERRUN), in ascending order.
     pub fn underruns(&self) -> &[Instant] {
         &self.underruns
     }
 
     /// Whether replies come from a recording.
-    pub const fn is_answered(&self) -> bool {
-        self.is_answered
+    pub const fn has_recorded_replies(&self) -> bool {
+        self.has_recorded_replies
     }
 
-    /// Replaces the rows of `is_simulated` by recorded replies, in the order of their starts. The log must be finished.
-    pub fn answer(&mut self, recorded: &[RecordedReply<'_>], is_simulated: &[bool]) {
+    /// Replaces the rows for which `is_simulated` is true by recorded replies. The log must be finished.
+    pub fn replace_replies(&mut self, recorded: &[RecordedReply<'_>], is_simulated: &[bool]) {
         let rows = core::mem::take(&mut self.rows);
         let mut new_index = alloc::vec![None; rows.len()];
         for ((row, new_index), is_simulated) in rows.into_iter().zip(&mut new_index).zip(is_simulated) {
@@ -159,27 +164,38 @@ impl PacketLog {
         for tick in &mut self.ticks {
             tick.row = tick.row.and_then(|row| new_index.get(row).copied().flatten());
         }
-        self.is_answered = true;
+        self.has_recorded_replies = true;
         self.finish();
     }
 
     fn push_recorded(&mut self, RecordedReply { start, end, bytes, reply }: &RecordedReply<'_>) {
         let bytes_start = self.bytes.len();
         self.bytes.extend_from_slice(bytes);
-        self.seen.resize(self.bytes.len(), *start);
+        self.start_bits.resize(self.bytes.len(), *start);
+        self.push_row(*start, *end, reply.map_or(RowOutcome::Recorded, RowOutcome::Reply), bytes_start);
+    }
+
+    /// Adds a row with the bytes from `bytes_start` on.
+    fn push_row(&mut self, start: Instant, end: Instant, outcome: RowOutcome, bytes_start: usize) {
+        let bytes_end = self.bytes.len();
+        debug_assert!(
+            bytes_start <= bytes_end && bytes_end <= self.start_bits.len(),
+            "a byte has no start bit"
+        );
+        let (tick_start, tick_end) = (None, None);
         self.rows.push(LoggedPacket {
-            start: *start,
-            end: *end,
-            outcome: reply.map_or(RowOutcome::Recorded, RowOutcome::Reply),
-            tick_start: None,
-            tick_end: None,
+            start,
+            end,
+            outcome,
+            tick_start,
+            tick_end,
             bytes_start,
-            bytes_end: self.bytes.len(),
-            latest: *end,
+            bytes_end,
+            latest: end,
         });
     }
 
-    /// Indices of the rows of a finished log whose time on the line touches the cycles `start..=end`, rising.
+    /// Ascending indices of the rows of a finished log that are on the line in the cycles `start..=end`.
     pub fn touching(&self, start: Instant, end: Instant) -> impl Iterator<Item = usize> {
         let first = self.rows.partition_point(|row| row.latest < start);
         let rows = self.rows.iter().enumerate().skip(first).take_while(move |(_, row)| row.start <= end);
@@ -188,9 +204,9 @@ impl PacketLog {
 
     /// Closes an open row and sorts the rows by their starts.
     pub fn finish(&mut self) {
-        debug_assert!(self.broken.is_sorted(), "framing errors go back in time");
+        debug_assert!(self.framing_errors.is_sorted(), "framing errors are not in order");
         if self.open.is_some() {
-            self.close(self.last, if self.ignoring { RowOutcome::Ignored } else { RowOutcome::Open });
+            self.close(self.last, if self.ignoring { RowOutcome::Ignored } else { RowOutcome::Incomplete });
         }
         if !self.rows.is_sorted_by_key(|row| row.start) {
             self.sort();
@@ -200,10 +216,7 @@ impl PacketLog {
             latest = latest.max(row.end);
             row.latest = latest;
         }
-        debug_assert!(
-            self.rows.is_sorted_by_key(|row| row.start),
-            "rows are not in the order of their starts"
-        );
+        debug_assert!(self.rows.is_sorted_by_key(|row| row.start), "rows are not in order");
     }
 
     fn sort(&mut self) {
@@ -236,19 +249,7 @@ impl PacketLog {
             self.stop(end);
         }
         let bytes_start = self.rows.last().map_or(0, |row| row.bytes_end);
-        let bytes_end = self.bytes.len();
-        debug_assert!(bytes_start <= bytes_end && bytes_end <= self.seen.len(), "a byte has no start bit");
-        let (tick_start, tick_end) = (None, None);
-        self.rows.push(LoggedPacket {
-            start,
-            end,
-            outcome,
-            tick_start,
-            tick_end,
-            bytes_start,
-            bytes_end,
-            latest: end,
-        });
+        self.push_row(start, end, outcome, bytes_start);
     }
 
     fn stop(&mut self, at: Instant) {
@@ -265,13 +266,13 @@ impl Sink for PacketLog {
             Event::Byte { start: seen, byte } => {
                 self.open.get_or_insert(seen);
                 self.bytes.push(byte);
-                self.seen.push(seen);
+                self.start_bits.push(seen);
                 self.last = at;
             }
-            // On a framed line only the byte is missing, and the CRC detects that.
-            Event::FramingError { start: seen, is_dropping: false } => self.broken.push(seen),
+            // On a framed line only this byte is lost, which the CRC detects.
+            Event::FramingError { start: seen, is_dropping: false } => self.framing_errors.push(seen),
             Event::FramingError { start: seen, .. } => {
-                self.broken.push(seen);
+                self.framing_errors.push(seen);
                 self.open.get_or_insert(seen);
                 self.close(at, RowOutcome::Framing);
                 self.ignoring = true;
@@ -286,17 +287,17 @@ impl Sink for PacketLog {
             Event::Frame(outcome) => self.close(at, RowOutcome::Frame(outcome)),
             Event::Reply { start, end, reply, positions } => {
                 self.bytes.extend(reply.emit(positions.as_ref()));
-                self.seen.resize(self.bytes.len(), start);
+                self.start_bits.resize(self.bytes.len(), start);
                 self.open = Some(start);
                 self.close(end, RowOutcome::Reply(reply));
             }
             Event::Collision => {
-                // Bytes of the incomplete packet stay with it.
-                let (open, coming) = (self.open.take(), self.bytes_of_open());
-                self.bytes.truncate(self.bytes.len() - coming.len());
+                // The bytes so far belong to the packet, not to the collision.
+                let (open, received) = (self.open.take(), self.bytes_of_open());
+                self.bytes.truncate(self.bytes.len() - received.len());
                 self.open = Some(at);
                 self.close(at, RowOutcome::Collision);
-                self.bytes.extend(coming);
+                self.bytes.extend(received);
                 self.open = open;
             }
             Event::Underrun => self.underruns.push(at),
@@ -326,7 +327,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_that_firmware_pushed_have_no_row_and_those_around_them_their_own() {
+    fn ticks_pushed_by_firmware_have_no_row() {
         let packet =
             |seen| [Event::Byte { start: Instant(seen), byte: 1 }, Event::Packet(PacketOutcome::Queued)];
         let [start, pushed] = [Event::TickStart { commands: [0; 16] }, Event::Pushed];
@@ -341,11 +342,11 @@ mod tests {
         assert_eq!(rows, [Some(0), None, None], "the second packet's tick was stopped before it began");
         assert_eq!(log.rows()[1].tick_start, None);
         let ends = [0, 1].map(|tick| log.tick_end(&log.ticks()[tick], Cycles(2)).0);
-        assert_eq!(ends, [107, 107], "the first by itself, the second by the stop");
+        assert_eq!(ends, [107, 107], "the first after its length, the second by the stop");
     }
 
     #[test]
-    fn recorded_replies_replace_simulated_rows_and_ticks_keep_theirs() {
+    fn recorded_replies_replace_simulated_rows_but_not_ticks() {
         let status = stepscope_peripheral::protocol::Status {
             state: stepscope_peripheral::protocol::State::Ready,
             free: 1,
@@ -373,7 +374,7 @@ mod tests {
         let is_simulated = [false, true, false, true];
         let all =
             [recorded(5, &[5; 2], None), recorded(70, &[70; 2], Some(reply)), recorded(900, &[132; 2], None)];
-        log.answer(&all, &is_simulated);
+        log.replace_replies(&all, &is_simulated);
         let rows: Vec<_> = log
             .rows()
             .iter()
@@ -391,23 +392,19 @@ mod tests {
                 (900, RowOutcome::Recorded, &[132, 132]),
             ]
         );
-        assert_eq!(log.seen(2), [Instant(70), Instant(70)]);
+        assert_eq!(log.start_bits(2), [Instant(70), Instant(70)]);
         assert_eq!(log.ticks().iter().map(|tick| tick.row).collect::<Vec<_>>(), [Some(1), Some(3)]);
         assert_eq!(log.touching(Instant(20), Instant(80)).collect::<Vec<_>>(), [0, 2]);
-        assert!(log.is_answered() && !PacketLog::default().is_answered());
+        assert!(log.has_recorded_replies() && !PacketLog::default().has_recorded_replies());
     }
 
     #[test]
-    fn a_tick_that_is_stopped_in_the_cycle_of_its_start_lasts_no_time() {
+    fn a_tick_stopped_in_its_first_cycle_has_no_duration() {
         let mut log = PacketLog::default();
         log.event(Instant(5), Event::Stopped);
         log.event(Instant(9), Event::TickStart { commands: [0; 16] });
         log.event(Instant(9), Event::Stopped);
-        assert_eq!(
-            log.tick_end(&log.ticks()[0], Cycles(100)),
-            Instant(9),
-            "not the stop before, nor by itself"
-        );
+        assert_eq!(log.tick_end(&log.ticks()[0], Cycles(100)), Instant(9), "ended by the second stop");
     }
 
     #[test]
@@ -423,12 +420,12 @@ mod tests {
         for (at, event) in events {
             log.event(Instant(at), event);
         }
-        assert_eq!(log.rows()[0].outcome, RowOutcome::Collision, "known first");
+        assert_eq!(log.rows()[0].outcome, RowOutcome::Collision, "logged first");
         log.finish();
         let logged: Vec<_> = log.rows().iter().map(|row| (row.start.0, row.outcome)).collect();
         assert_eq!(logged, [(10, RowOutcome::Packet(PacketOutcome::Queued)), (25, RowOutcome::Collision)]);
         assert_eq!((log.bytes(0), log.bytes(1)), ([1, 2].as_slice(), [].as_slice()));
-        assert_eq!(log.seen(0), [Instant(10), Instant(22)]);
+        assert_eq!(log.start_bits(0), [Instant(10), Instant(22)]);
         assert_eq!(
             log.touching(Instant(28), Instant(29)).collect::<Vec<_>>(),
             [0],
@@ -436,22 +433,5 @@ mod tests {
         );
         assert_eq!(log.ticks()[0].row, Some(0));
         assert_eq!(log.rows()[0].tick_start, Some(Instant(31)));
-    }
-
-    #[test]
-    fn a_packet_is_logged_with_its_bytes() {
-        use crate::packets::log::{PacketLog, RowOutcome};
-        use stepscope_peripheral::{
-            signal::{Event, PacketOutcome, Sink},
-            units::Instant,
-        };
-
-        let mut log = PacketLog::default();
-        log.event(Instant(15), Event::Byte { start: Instant(10), byte: 0x85 });
-        log.event(Instant(15), Event::Packet(PacketOutcome::Queued));
-        assert_eq!(
-            (log.rows()[0].outcome, log.bytes(0)),
-            (RowOutcome::Packet(PacketOutcome::Queued), &[0x85][..])
-        );
     }
 }

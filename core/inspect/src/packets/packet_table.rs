@@ -18,17 +18,15 @@ pub use filter::{Filter, Request};
 pub use format::{Mark, TimeScale};
 pub use line_bytes::LineByte;
 
-use crate::packets::dissector::{Head, Meaning, Reading, write_steps};
+use crate::packets::dissector::{Dissection, Dissector, FrameHead, write_steps};
 use crate::packets::log::{LoggedPacket, LoggedTick, PacketLog, RowOutcome};
 use alloc::{string::String, vec::Vec};
 use serde::Serialize;
-use stepscope_peripheral::{
-    config::{Config, Protocol},
-    units::Instant,
-    wire::BitTimes,
-};
+use stepscope_peripheral::config::{Config, Protocol};
+use stepscope_peripheral::{units::Instant, wire::BitTimes};
 use stepscope_sim::{Experiment, Run};
 
+/// What a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowKind {
     Packet,
@@ -39,6 +37,7 @@ pub enum RowKind {
 }
 
 impl RowKind {
+    /// Its name in outputs.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Packet => "packet",
@@ -49,13 +48,14 @@ impl RowKind {
     }
 }
 
-/// A formatted row. Cycles are half-open ranges.
+/// A formatted row. Ranges of cycles do not include their end.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Row {
     pub index: usize,
     pub kind: &'static str,
     pub start_cycle: u64,
     pub end_cycle: u64,
+    /// End of the last stop bit.
     pub line_end_cycle: u64,
     pub start: String,
     /// Time since the end of the row before; empty for the first.
@@ -71,6 +71,7 @@ pub struct Row {
     pub tick_end_cycle: Option<u64>,
 }
 
+/// A formatted tick.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TickRow {
     pub start_cycle: u64,
@@ -79,6 +80,7 @@ pub struct TickRow {
     pub fields: String,
 }
 
+/// Values that a filter can select.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Choices {
     pub addresses: Vec<u8>,
@@ -90,52 +92,58 @@ pub struct Choices {
 pub struct PacketTable<'a> {
     experiment: &'a Experiment,
     run: &'a Run,
-    own: &'a Config,
+    config: &'a Config,
     log: &'a PacketLog,
 }
 
 impl<'a> PacketTable<'a> {
-    /// The table of controller `controller`; `log` is its finished log. An unknown controller counts as the first.
+    /// The table of controller `controller`; `log` is its finished log. An unknown number selects the first controller.
     pub fn new(experiment: &'a Experiment, run: &'a Run, controller: usize, log: &'a PacketLog) -> Self {
-        let own = experiment.configs().nth(controller).unwrap_or_else(|| experiment.config());
-        Self { experiment, run, own, log }
+        let config = experiment.configs().nth(controller).unwrap_or_else(|| experiment.config());
+        Self { experiment, run, config, log }
     }
 
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.log.rows().len()
     }
 
+    /// Whether there is no row.
     pub fn is_empty(&self) -> bool {
         self.log.rows().is_empty()
     }
 
+    /// The bytes of row `index`.
     pub fn bytes(&self, index: usize) -> &'a [u8] {
         self.log.bytes(index)
     }
 
+    /// Unit and digits of the times of this table.
     pub fn scale(&self) -> TimeScale {
-        TimeScale::of(self.run.cycles(), self.own.clock_hz())
+        TimeScale::of(self.run.cycles(), self.config.clock_hz())
     }
 
+    /// What row `index` is.
     pub fn kind(&self, index: usize) -> Option<RowKind> {
         let row = self.logged(index)?;
         Some(match row.outcome {
             RowOutcome::Collision => RowKind::Collision,
             RowOutcome::Reply(_) | RowOutcome::Recorded => RowKind::Reply,
-            _ if self.own.protocol() == Protocol::Raw => RowKind::Packet,
+            _ if self.config.protocol() == Protocol::Raw => RowKind::Packet,
             _ if self.is_of_another_controller(index, row) => RowKind::Reply,
             _ => RowKind::Frame,
         })
     }
 
-    /// Whether another controller sent a row of a framed line: neither the host nor a forced level began it.
+    /// Whether another controller sent a row of a framed line: neither the host nor a forced level started it.
     fn is_of_another_controller(&self, index: usize, row: &LoggedPacket) -> bool {
-        let first = self.log.seen(index).first().copied().unwrap_or(row.start);
-        let of_host = self.run.schedule().last_at_or_before(first + self.own.bit()).is_some_and(|send| {
-            let sent = self.host_times().bytes(send.bytes.len() as u64);
-            first <= send.start + sent
-        });
-        if of_host {
+        let first = self.log.start_bits(index).first().copied().unwrap_or(row.start);
+        let is_of_host =
+            self.run.schedule().last_at_or_before(first + self.config.bit()).is_some_and(|send| {
+                let sent = self.host_times().bytes(send.bytes.len() as u64);
+                first <= send.start + sent
+            });
+        if is_of_host {
             return false;
         }
         match self.head(index) {
@@ -152,15 +160,16 @@ impl<'a> PacketTable<'a> {
 
     /// The row's address, if its bytes are valid.
     pub fn address(&self, index: usize) -> Option<u8> {
-        match (self.own.protocol(), self.logged(index)?.outcome) {
+        match (self.config.protocol(), self.logged(index)?.outcome) {
             (Protocol::Raw, RowOutcome::Packet(_)) => {
-                self.own.packet_address().and_then(|_| self.bytes(index).first().copied())
+                self.config.packet_address().and_then(|_| self.bytes(index).first().copied())
             }
             (Protocol::Raw, _) => None,
             (Protocol::Framed, _) => self.head(index).map(|head| head.address),
         }
     }
 
+    /// Row `index`, formatted.
     pub fn row(&self, index: usize) -> Option<Row> {
         let logged = self.logged(index)?;
         let (mut start, mut gap) = (String::new(), String::new());
@@ -190,22 +199,25 @@ impl<'a> PacketTable<'a> {
         })
     }
 
+    /// Appends the bytes of row `index` in hexadecimal.
     pub fn write_hex(&self, index: usize, text: &mut String) {
         format::write_hex(self.bytes(index), " ", text);
     }
 
-    pub fn meaning(&self, index: usize) -> Option<Meaning> {
+    /// The fields of row `index`.
+    pub fn dissect(&self, index: usize) -> Option<Dissection> {
         let outcome = self.logged(index)?.outcome;
-        Some(self.reading(&|address| self.channels(address)).of(self.bytes(index), outcome))
+        Some(self.dissector(&|address| self.channels(address)).dissect(self.bytes(index), outcome))
     }
 
+    /// The addresses and kinds that occur.
     pub fn choices(&self) -> Choices {
         let (mut addresses, mut kinds) = ([false; 256], Vec::new());
         for index in 0..self.len() {
             if let Some(address) = self.address(index) {
                 addresses[usize::from(address)] = true;
             }
-            let name = self.head(index).and_then(Head::name);
+            let name = self.head(index).and_then(FrameHead::name);
             for kind in [self.kind(index).map(RowKind::name), name].into_iter().flatten() {
                 if !kinds.contains(&kind) {
                     kinds.push(kind);
@@ -223,6 +235,7 @@ impl<'a> PacketTable<'a> {
         self.log.touching(start, end)
     }
 
+    /// Whether row `index` is on the line in the cycles `start..=end`.
     pub fn is_on_line(&self, index: usize, start: Instant, end: Instant) -> bool {
         self.logged(index).is_some_and(|row| row.start <= end) && self.line_end(index) >= start.0
     }
@@ -233,7 +246,7 @@ impl<'a> PacketTable<'a> {
         start: Instant,
         end: Instant,
     ) -> impl ExactSizeIterator<Item = TickRow> + use<'a> {
-        let (all, length, table) = (self.log.ticks(), self.own.tick(), *self);
+        let (all, length, table) = (self.log.ticks(), self.config.tick(), *self);
         let first = all.partition_point(|tick| tick.start + length <= start);
         let until = all.partition_point(|tick| tick.start <= end).max(first);
         all.get(first..until).unwrap_or_default().iter().map(move |tick| table.tick(tick))
@@ -241,17 +254,17 @@ impl<'a> PacketTable<'a> {
 
     fn tick(&self, tick: &LoggedTick) -> TickRow {
         let mut fields = String::new();
-        write_steps(tick.commands.iter().take(usize::from(self.own.channels())).copied(), &mut fields);
+        write_steps(tick.commands.iter().take(usize::from(self.config.channels())).copied(), &mut fields);
         TickRow {
             start_cycle: tick.start.0,
-            end_cycle: self.log.tick_end(tick, self.own.tick()).0.min(self.run.cycles().0),
+            end_cycle: self.log.tick_end(tick, self.config.tick()).0.min(self.run.cycles().0),
             row: tick.row,
             fields,
         }
     }
 
-    pub(crate) fn own(&self) -> &'a Config {
-        self.own
+    pub(crate) fn config(&self) -> &'a Config {
+        self.config
     }
 
     pub(crate) fn packets(&self) -> &'a PacketLog {
@@ -262,45 +275,28 @@ impl<'a> PacketTable<'a> {
         self.log.rows().get(index)
     }
 
-    fn head(&self, index: usize) -> Option<Head> {
-        Head::of(self.bytes(index), self.logged(index)?.outcome)
+    fn head(&self, index: usize) -> Option<FrameHead> {
+        FrameHead::of(self.bytes(index), self.logged(index)?.outcome)
     }
 
     fn write_summary(&self, index: usize, text: &mut String) {
         if let Some(row) = self.logged(index) {
             let channels = |address| self.channels(address);
-            self.reading(&channels).summary(self.bytes(index), row.outcome, text);
+            self.dissector(&channels).summary(self.bytes(index), row.outcome, text);
         }
     }
 
-    fn reading<'b>(&self, channels: &'b dyn Fn(u8) -> u8) -> Reading<'b> {
-        let addressed = self.own.packet_address().is_some();
-        Reading { protocol: self.own.protocol(), addressed, channels }
+    fn dissector<'b>(&self, channels: &'b dyn Fn(u8) -> u8) -> Dissector<'b> {
+        let addressed = self.config.packet_address().is_some();
+        Dissector { protocol: self.config.protocol(), addressed, channels }
     }
 
     fn channels(&self, address: u8) -> u8 {
         let known = self.experiment.configs().find(|config| config.address() == Some(address));
-        known.unwrap_or(self.own).channels()
+        known.unwrap_or(self.config).channels()
     }
 
     fn host_times(&self) -> BitTimes {
-        BitTimes::new(self.own.clock_hz(), self.experiment.baud())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_first_row_is_a_queued_packet() {
-        use crate::packets::packet_table::PacketTable;
-        use crate::trace::stored_run::Recording;
-        use stepscope_sim::Experiment;
-
-        let experiment = Experiment::from_json("{}").expect("the default motion");
-        let mut recording = Recording::default();
-        let run = experiment.run(&mut recording);
-        let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
-        let row = table.row(0).expect("there are packets");
-        assert_eq!((row.kind, row.outcome.as_str()), ("packet", "queued"));
+        BitTimes::new(self.config.clock_hz(), self.experiment.baud())
     }
 }

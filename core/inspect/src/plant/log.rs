@@ -1,10 +1,10 @@
-//! A plant's run as minimum and maximum per interval, with snapshots of the plant from which a shorter window is
-//! computed again, to the same bits.
+//! A plant's run as minimum and maximum per interval. Shorter windows are computed again from snapshots of the plant,
+//! bit for bit.
 //!
 //! ```text
 //! points   . . . . . . . . . . . . . . . .     one per grid step, up to 10^8
-//! bins     [   ][   ][   ][   ][   ][         min and max of several points; two bins become one when there are too many
-//! snapshots  ^                 ^              the plant and its number of processed records
+//! bins     [   ][   ][   ][   ][   ][         minimum and maximum of several points; merged in pairs if there are too many
+//! snapshots  ^                 ^              the plant, and its number of processed records
 //! ```
 
 use alloc::{vec, vec::Vec};
@@ -13,25 +13,27 @@ use stepscope_plant::{Observer, Plant};
 
 /// Values of the whole plant: bus voltage in V, supply current and its sensor's reading in A.
 pub const SUPPLY: [&str; 3] = ["bus_v", "load_a", "sensor_a"];
-/// Values of each motor: command and rotor in full steps, their difference, full steps/s, phase currents in A,
-/// encoder code.
+/// Values of each motor: full steps, full steps/s, phase currents in A, encoder code.
 pub const MOTOR: [&str; 7] = ["command", "rotor", "error", "speed", "phase_a_a", "phase_b_a", "encoder"];
 
+/// Maximum bins.
 const BINS: usize = 8192;
-const ENOUGH: u64 = 512;
+/// Minimum bins of a window; with fewer, its points are computed again.
+const MIN_BINS: u64 = 512;
 const MAX_SNAPSHOTS: usize = 64;
-const POINTS_A_COLUMN: u64 = 2;
+const POINTS_PER_COLUMN: u64 = 2;
 
+/// The stored values of one plant.
 #[derive(Clone, Debug)]
 pub struct PlantLog {
     step_cycles: u64,
-    points_a_bin: u64,
-    in_last: u64,
+    points_per_bin: u64,
+    points_in_last_bin: u64,
     min: Vec<f64>,
     max: Vec<f64>,
     latest: Vec<f64>,
     snapshots: Vec<Snapshot>,
-    apart: u64,
+    min_spacing: u64,
 }
 
 #[derive(Clone, Debug)]
@@ -40,6 +42,7 @@ struct Snapshot {
     records: usize,
 }
 
+/// A range of cycles, divided into pixel columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CycleWindow {
     pub from: u64,
@@ -47,6 +50,7 @@ pub struct CycleWindow {
     pub columns: usize,
 }
 
+/// A curve as minimum and maximum.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Band {
     /// Cycles of points, or of the middles of intervals.
@@ -59,11 +63,11 @@ impl Observer for PlantLog {
     #[inline]
     fn point(&mut self, plant: &Plant) {
         read(plant, &mut self.latest);
-        if self.in_last == self.points_a_bin || self.min.is_empty() {
+        if self.points_in_last_bin == self.points_per_bin || self.min.is_empty() {
             if self.min.len() == BINS * self.values() {
-                self.halve();
+                self.merge_bins();
             }
-            self.in_last = 0;
+            self.points_in_last_bin = 0;
             self.min.extend_from_slice(&self.latest);
             self.max.extend_from_slice(&self.latest);
         } else {
@@ -74,7 +78,7 @@ impl Observer for PlantLog {
                 *max = max.max(value);
             }
         }
-        self.in_last += 1;
+        self.points_in_last_bin += 1;
     }
 }
 
@@ -89,24 +93,25 @@ fn read(plant: &Plant, values: &mut [f64]) {
 }
 
 impl PlantLog {
+    /// An empty log of a plant that has not run yet.
     pub fn new(plant: &Plant) -> Self {
         Self {
             step_cycles: plant.step_cycles(),
-            points_a_bin: 1,
-            in_last: 0,
+            points_per_bin: 1,
+            points_in_last_bin: 0,
             min: Vec::new(),
             max: Vec::new(),
             latest: vec![0.0; SUPPLY.len() + plant.motors() * MOTOR.len()],
             snapshots: vec![Snapshot { plant: plant.clone(), records: 0 }],
-            apart: 1,
+            min_spacing: 1,
         }
     }
 
     /// Takes a snapshot of a plant that has processed the first `records` records; between slices of a run only.
     pub fn snapshot(&mut self, plant: &Plant, records: usize) {
         let step = plant.step_cycles();
-        let last = self.snapshots.last().map_or(0, |snapshots| snapshots.plant.cycle());
-        if plant.cycle() >= last + self.apart * step {
+        let last = self.snapshots.last().map_or(0, |snapshot| snapshot.plant.cycle());
+        if plant.cycle() >= last + self.min_spacing * step {
             self.snapshots.push(Snapshot { plant: plant.clone(), records });
         }
         if self.snapshots.len() > MAX_SNAPSHOTS {
@@ -115,11 +120,12 @@ impl PlantLog {
                 index += 1;
                 index % 2 == 1
             });
-            self.apart = (plant.cycle() / step / MAX_SNAPSHOTS as u64).max(1) * 2;
+            self.min_spacing = (plant.cycle() / step / MAX_SNAPSHOTS as u64).max(1) * 2;
         }
     }
 
-    pub const fn of_motor(channel: usize) -> usize {
+    /// Index of the first value of a motor, in the order of [`MOTOR`].
+    pub const fn motor_index(channel: usize) -> usize {
         SUPPLY.len() + channel * MOTOR.len()
     }
 
@@ -127,7 +133,8 @@ impl PlantLog {
         self.latest.len()
     }
 
-    fn halve(&mut self) {
+    /// Merges pairs of bins.
+    fn merge_bins(&mut self) {
         let values = self.values();
         for (bins, take) in [(&mut self.min, f64::min as fn(f64, f64) -> f64), (&mut self.max, f64::max)] {
             for at in 0..BINS / 2 * values {
@@ -136,7 +143,7 @@ impl PlantLog {
             }
             bins.truncate(BINS / 2 * values);
         }
-        self.points_a_bin *= 2;
+        self.points_per_bin *= 2;
     }
 
     /// Values by index over a window: at most two points per column, and one more at each end.
@@ -145,10 +152,10 @@ impl PlantLog {
         if self.min.is_empty() || window.to < window.from {
             return bands;
         }
-        let bin_cycles = self.points_a_bin * self.step_cycles;
+        let bin_cycles = self.points_per_bin * self.step_cycles;
         let points = (window.to - window.from) / self.step_cycles;
-        let few = POINTS_A_COLUMN * window.columns.max(1) as u64;
-        if self.points_a_bin > 1 && points / self.points_a_bin >= ENOUGH {
+        let few = POINTS_PER_COLUMN * window.columns.max(1) as u64;
+        if self.points_per_bin > 1 && points / self.points_per_bin >= MIN_BINS {
             let bins = self.min.len() / self.values();
             // A bin ends with the point in the cycle of its edge.
             let (first, last) = (window.from.saturating_sub(1) / bin_cycles, window.to / bin_cycles + 1);
@@ -169,30 +176,31 @@ impl PlantLog {
             columns: &mut columns,
             point: self.latest.clone(),
         };
-        self.again(records, window.from, window.to.saturating_add(self.step_cycles), &mut watched);
+        self.replay(records, window.from, window.to.saturating_add(self.step_cycles), &mut watched);
         bands
     }
 
+    /// All values at a cycle.
     pub fn at(&self, records: &[Record], cycle: u64) -> Vec<f64> {
         let mut values = vec![0.0; self.values()];
-        if let Some(plant) = self.again(records, cycle, cycle, &mut ()) {
+        if let Some(plant) = self.replay(records, cycle, cycle, &mut ()) {
             read(&plant, &mut values);
         }
         values
     }
 
     /// Runs the plant again from the last snapshot before `from`, up to `to`.
-    fn again(&self, records: &[Record], from: u64, to: u64, observer: &mut dyn Observer) -> Option<Plant> {
-        // A snapshot lies behind its point.
+    fn replay(&self, records: &[Record], from: u64, to: u64, observer: &mut dyn Observer) -> Option<Plant> {
+        // A snapshot is taken after its point.
         let before = from.saturating_sub(2 * self.step_cycles);
-        let snapshots = self
+        let snapshot = self
             .snapshots
             .iter()
             .rev()
-            .find(|snapshots| snapshots.plant.cycle() <= before)
+            .find(|snapshot| snapshot.plant.cycle() <= before)
             .or(self.snapshots.first())?;
-        let mut plant = snapshots.plant.clone();
-        for &record in records.iter().skip(snapshots.records).take_while(|record| record.cycle.0 <= to) {
+        let mut plant = snapshot.plant.clone();
+        for &record in records.iter().skip(snapshot.records).take_while(|record| record.cycle.0 <= to) {
             plant.record(record, observer);
         }
         plant.advance(to, observer);
@@ -200,20 +208,21 @@ impl PlantLog {
     }
 }
 
+/// Joins points or bins to columns.
 struct Columns<'a> {
     bands: &'a mut [Band],
-    join: u64,
-    joined: u64,
+    per_column: u64,
+    in_last: u64,
     first: f64,
 }
 
 impl<'a> Columns<'a> {
-    fn new(bands: &'a mut [Band], join: u64) -> Self {
-        Self { bands, join: join.max(1), joined: 0, first: 0.0 }
+    fn new(bands: &'a mut [Band], per_column: u64) -> Self {
+        Self { bands, per_column: per_column.max(1), in_last: 0, first: 0.0 }
     }
 
     fn add(&mut self, cycle: f64, values: impl Iterator<Item = (f64, f64)>) {
-        let is_new = self.joined == 0;
+        let is_new = self.in_last == 0;
         if is_new {
             self.first = cycle;
         }
@@ -231,7 +240,7 @@ impl<'a> Columns<'a> {
                 }
             }
         }
-        self.joined = (self.joined + 1) % self.join;
+        self.in_last = (self.in_last + 1) % self.per_column;
     }
 }
 
@@ -250,37 +259,5 @@ impl Observer for Watched<'_, '_> {
         read(plant, &mut self.point);
         let point = &self.point;
         self.columns.add(plant.cycle() as f64, self.values.iter().map(|&value| (point[value], point[value])));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn a_log_has_a_curve_per_value() {
-        use crate::plant::log::{CycleWindow, PlantLog};
-        use crate::trace::stored_run::Recording;
-        use stepscope_peripheral::{signal::Record, units::Instant};
-        use stepscope_sim::Experiment;
-
-        let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
-        let mut run = experiment.start();
-        let mut recording = Recording::default();
-        let mut log = PlantLog::new(run.plant(0).expect("it has one"));
-        while !run.advance_observed(
-            (Instant(run.cycles().0 + 100_000), u64::MAX),
-            &mut [&mut recording],
-            &mut [&mut log],
-        ) {
-            log.snapshot(run.plant(0).expect("it has one"), recording.trace.len());
-        }
-        let records: &[Record] = &recording.trace;
-        let all = log.curves(
-            records,
-            CycleWindow { from: 0, to: run.cycles().0, columns: 600 },
-            &[PlantLog::of_motor(0) + 1],
-        );
-        assert!((all[0].max.last().expect("columns") - 200.0).abs() < 0.1);
-        let end = log.at(records, run.cycles().0);
-        assert!((end[PlantLog::of_motor(0) + 1] - 200.0).abs() < 0.1);
     }
 }

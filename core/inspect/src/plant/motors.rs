@@ -1,18 +1,16 @@
-//! Motors and drivers to choose from, with the source of each figure.
+//! Listed motors and drivers, with the source of each value.
 //!
-//! No data sheet states friction: every motor has the default motor's in proportion to its holding torque.
-//! [`MotorSheet::typical`] lists all such figures that the source does not state.
+//! No data sheet states friction: it is that of the default motor in proportion to the holding torque.
+//! [`MotorSheet::typical`] lists all values that the source does not state.
 
 use crate::motion::torque::Machine;
 use alloc::vec::Vec;
-use stepscope_motion::{
-    mechanics::{Mechanics, Rotary},
-    motor::{Decay, Drive, Motor, Regulator},
-    moves::Axis,
-};
+use stepscope_motion::mechanics::{Mechanics, Rotary};
+use stepscope_motion::motor::{Decay, Drive, Motor, Regulator};
+use stepscope_motion::moves::Axis;
 use stepscope_scenario::{PlantMotor, Scenario, Source};
 
-/// A motor's figures and their source.
+/// A motor's data and their source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorSheet {
     pub id: &'static str,
@@ -27,13 +25,13 @@ pub struct MotorSheet {
     pub detent_torque_mn_m: f64,
     pub friction_mn_m: f64,
     pub viscous_un_m_s: f64,
-    /// The document, and the figures that it gives.
+    /// The document, and the values that it states.
     pub source: &'static str,
-    /// Fields that the source does not state: figures of the usual size.
+    /// Fields that the source does not state; they have typical values.
     pub typical: &'static [&'static str],
 }
 
-/// A driver's figures and their source.
+/// A driver's data and their source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveSheet {
     pub id: &'static str,
@@ -60,7 +58,7 @@ const ALL: &[&str] = &[
 ];
 
 /// A 1.8 degree motor with the default friction in proportion to its holding torque.
-const fn usual(
+const fn with_default_friction(
     [rated_current_a, resistance_ohm, inductance_mh]: [f64; 3],
     [holding_torque_mn_m, rotor_inertia_g_cm2, detent_torque_mn_m]: [f64; 3],
 ) -> MotorSheet {
@@ -81,90 +79,90 @@ const fn usual(
     }
 }
 
-/// Rows are A, ohm, mH; mN*m, g*cm^2, mN*m of detent torque.
+/// All motors. Rows are A, ohm, mH; mN*m, g*cm^2, mN*m of detent torque.
 pub const MOTORS: &[MotorSheet] = &[
     MotorSheet {
         id: "song-2021",
         name: "Song, Han and Lu 2021: 1.5 A, 400 mN·m (the default)",
-        source: "table 3 of the document; it gives no friction",
-        ..usual([1.5, 1.6, 4.3], [400.0, 45.0, 0.0])
+        source: "table 3 of the paper; it states no friction",
+        ..with_default_friction([1.5, 1.6, 4.3], [400.0, 45.0, 0.0])
     },
     MotorSheet {
         id: "patent-2019",
         name: "For RU 2704486, figure 1: 1.5 A, 300 mN·m",
         friction_mn_m: 15.0,
         viscous_un_m_s: 1000.0,
-        source: "ours: the patent names no motor. That of the preset patent-2019-figure-1, which adds a load of \
+        source: "not from the patent, which names no motor: the motor of the preset patent-2019-figure-1, which has a load of \
                  100 g·cm², 27 V and a bridge of 1 Ω",
         typical: ALL,
-        ..usual([1.5, 1.6, 5.3], [300.0, 45.0, 0.0])
+        ..with_default_friction([1.5, 1.6, 5.3], [300.0, 45.0, 0.0])
     },
     MotorSheet {
         id: "nema-8",
         name: "NEMA 8, 30 mm long: 0.6 A, 18 mN·m",
-        source: "no data sheet: figures of the usual size",
+        source: "no data sheet: figures of the with_default_friction size",
         typical: ALL,
-        ..usual([0.6, 6.5, 1.7], [18.0, 2.0, 0.0])
+        ..with_default_friction([0.6, 6.5, 1.7], [18.0, 2.0, 0.0])
     },
     MotorSheet {
         id: "sy28sth45",
         name: "NEMA 11, Songyang SY28STH45-0674A: 0.67 A, 95 mN·m",
         source: "the maker's drawing of 2012 (current, resistance, inductance, torque)",
         typical: INERTIA_AND_FRICTIONS,
-        ..usual([0.67, 6.8, 4.9], [95.0, 12.0, 0.0])
+        ..with_default_friction([0.67, 6.8, 4.9], [95.0, 12.0, 0.0])
     },
     MotorSheet {
         id: "ms14hs5p4150",
         name: "NEMA 14, MOONS' MS14HS5P4150: 1.5 A, 400 mN·m",
-        source: "the maker's figures as the motor list of klipper_tmc_autotune has them (current, resistance, inductance, \
+        source: "the maker's values, from the motor list of klipper_tmc_autotune (current, resistance, inductance, \
                  torque)",
         typical: INERTIA_AND_FRICTIONS,
-        ..usual([1.5, 2.2, 3.6], [400.0, 24.0, 0.0])
+        ..with_default_friction([1.5, 2.2, 3.6], [400.0, 24.0, 0.0])
     },
     MotorSheet {
         id: "ss2422",
         name: "NEMA 17 flat, Sanyo Denki SS2422-5041: 1 A, 186 mN·m",
-        source: "the maker's catalogue, page 60, thin 42 mm motors",
-        ..usual([1.0, 5.4, 2.9], [186.0, 28.0, 0.0])
+        source: "the maker's catalog, page 60, thin 42 mm motors",
+        ..with_default_friction([1.0, 5.4, 2.9], [186.0, 28.0, 0.0])
     },
     MotorSheet {
         id: "17hs4401",
         name: "NEMA 17, MotionKing 17HS4401: 1.7 A, 400 mN·m",
         source: "the maker's table of the series 17HS, row 17HS4401",
         typical: FRICTIONS,
-        ..usual([1.7, 1.5, 2.8], [400.0, 54.0, 22.0])
+        ..with_default_friction([1.7, 1.5, 2.8], [400.0, 54.0, 22.0])
     },
     MotorSheet {
         id: "as1010",
         name: "NEMA 17, Beckhoff AS1010: 1 A, 380 mN·m",
         source: "the maker's documentation AS1000, technical data; cogging torque 14 to 16 mN·m",
         typical: FRICTIONS,
-        ..usual([1.0, 4.1, 9.5], [380.0, 56.0, 15.0])
+        ..with_default_friction([1.0, 4.1, 9.5], [380.0, 56.0, 15.0])
     },
     MotorSheet {
         id: "qsh5718-55",
         name: "NEMA 23, Trinamic QSH5718-55-30-098: 3 A, 980 mN·m",
-        source: "the maker's technical data of QSH5718, where the rated current is r.m.s.",
+        source: "the maker's technical data of QSH5718, where the rated current is RMS",
         typical: FRICTIONS,
-        ..usual([3.0, 0.8, 2.1], [980.0, 209.0, 30.0])
+        ..with_default_friction([3.0, 0.8, 2.1], [980.0, 209.0, 30.0])
     },
     MotorSheet {
         id: "as1050",
         name: "NEMA 23, Beckhoff AS1050: 5 A, 1200 mN·m",
         source: "the maker's documentation AS1000, technical data; cogging torque 46 to 58 mN·m",
         typical: FRICTIONS,
-        ..usual([5.0, 0.28, 0.86], [1200.0, 360.0, 52.0])
+        ..with_default_friction([5.0, 0.28, 0.86], [1200.0, 360.0, 52.0])
     },
     MotorSheet {
         id: "as1060",
         name: "NEMA 34, Beckhoff AS1060: 5 A, 5000 mN·m",
         source: "the maker's documentation AS1000, technical data; cogging torque 147 to 215 mN·m",
         typical: FRICTIONS,
-        ..usual([5.0, 0.36, 2.8], [5000.0, 3000.0, 181.0])
+        ..with_default_friction([5.0, 0.36, 2.8], [5000.0, 3000.0, 181.0])
     },
 ];
 
-/// What the chips share: slow decay while the current rises, mixed while it falls.
+/// Common values of the chips: slow decay while the current rises, mixed decay while it falls.
 const CHIP: Drive = Drive {
     regulator: Regulator::Chopper,
     decay: Decay::Auto,
@@ -176,11 +174,11 @@ const CHIP: Drive = Drive {
     diode_v: 0.7,
 };
 
-/// Drivers known to the timing check have the same id there ([`drivers`](crate::trace::drivers)).
+/// All drivers. Those of the timing check have the same id there ([`drivers`](crate::trace::drivers)).
 pub const DRIVES: &[DriveSheet] = &[
     DriveSheet {
         id: "ideal",
-        name: "The mean of an ideal chopper (the default)",
+        name: "Mean current of an ideal chopper (the default)",
         drive: Drive {
             regulator: Regulator::Averaged,
             decay: Decay::Fast,
@@ -191,14 +189,14 @@ pub const DRIVES: &[DriveSheet] = &[
             bridge_ohm: 0.0,
             diode_v: 0.7,
         },
-        source: "no chip: what a good one comes to, five times as fast to work out",
+        source: "no chip: the average behavior of a good one, simulated five times as fast",
         typical: &["diode_v"],
     },
     DriveSheet {
         id: "a4988",
         name: "Allegro A4988",
         drive: Drive { diode_v: 1.2, ..CHIP },
-        source: "data sheet 4988-DS: 0.32 Ω source and sink, off-time 30 µs, slow or mixed decay by itself, diodes at most \
+        source: "data sheet 4988-DS: 0.32 Ω source and sink, off-time 30 µs, slow or mixed decay, selected automatically; diodes at most \
                  1.2 V",
         typical: &["fast_decay_fraction", "blanking_time_us"],
     },
@@ -206,8 +204,8 @@ pub const DRIVES: &[DriveSheet] = &[
         id: "a4979",
         name: "Allegro A4979",
         drive: Drive { bridge_ohm: 1.0, ..CHIP },
-        source: "data sheet A4979-DS: 0.5 Ω source and sink, slow, mixed or automatic decay; times and shares are programmed, \
-                 here as the A4988's",
+        source: "data sheet A4979-DS: 0.5 Ω source and sink, slow, mixed or automatic decay; times and shares are programmable, \
+                 here those of the A4988",
         typical: &["fast_decay_fraction", "off_time_us", "blanking_time_us", "diode_v"],
     },
     DriveSheet {
@@ -215,7 +213,7 @@ pub const DRIVES: &[DriveSheet] = &[
         name: "Texas Instruments DRV8825",
         drive: Drive { decay_share: 0.75, blank_us: 3.75, bridge_ohm: 0.4, ..CHIP },
         source: "data sheet SLVSA73: mixed decay, fast up to 75 % of a period. The chip chops at a fixed frequency; the \
-                 model has a fixed off-time, here about what is left of a period",
+                 model has a fixed off-time, here about the rest of a period",
         typical: &["off_time_us", "blanking_time_us", "bridge_ohm", "diode_v"],
     },
     DriveSheet {
@@ -230,16 +228,18 @@ pub const DRIVES: &[DriveSheet] = &[
             bridge_ohm: 0.34,
             ..CHIP
         },
-        source: "data sheet rev. 1.09: 0.17 Ω each side, sine table of 8 bits; TOFF = 3, its own \
-                 setting, is 9 to 10 µs at 12 MHz and comes twice a period. The hysteresis of SpreadCycle is not modeled, nor is StealthChop, which regulates a voltage",
+        source: "data sheet rev. 1.09: 0.17 Ω each side, sine table of 8 bits; its default \
+                 TOFF = 3 is 9 to 10 µs at 12 MHz, twice per period. The hysteresis of SpreadCycle and StealthChop (voltage regulation) are not modeled",
         typical: &["fast_decay_fraction", "off_time_us", "blanking_time_us", "diode_v"],
     },
 ];
 
+/// The motor with an id.
 pub fn motor(id: &str) -> Option<&'static MotorSheet> {
     MOTORS.iter().find(|sheet| sheet.id == id)
 }
 
+/// The driver with an id.
 pub fn drive(id: &str) -> Option<&'static DriveSheet> {
     DRIVES.iter().find(|sheet| sheet.id == id)
 }
@@ -263,14 +263,15 @@ impl MotorSheet {
         }
     }
 
-    /// The motor without load, on the default supply and microsteps.
+    /// The motor without load, with the default supply and microsteps.
     pub fn machine(&self) -> Option<Machine> {
         let full = Rotary { full_step_deg: self.full_step_deg, ..Rotary::default() };
         let motor = Some(self.replacing(&Motor::default()));
         Machine::of(&Axis { mechanics: Mechanics::Rotary(full), motor, ..Axis::default() })
     }
 
-    pub fn put_into(&self, scenario: &mut Scenario) {
+    /// Replaces every motor of a scenario.
+    pub fn apply_to(&self, scenario: &mut Scenario) {
         each_motor(scenario, |full_step_deg, motor| {
             *motor = self.replacing(motor);
             if let Some(full_step_deg) = full_step_deg {
@@ -281,7 +282,8 @@ impl MotorSheet {
 }
 
 impl DriveSheet {
-    pub fn put_into(&self, scenario: &mut Scenario) {
+    /// Replaces every driver of a scenario.
+    pub fn apply_to(&self, scenario: &mut Scenario) {
         each_motor(scenario, |_, motor| motor.drive = self.drive.clone());
     }
 }
@@ -300,7 +302,7 @@ fn each_motor(scenario: &mut Scenario, mut with: impl FnMut(Option<&mut f64>, &m
             Mechanics::Screw(m) => Some(&mut m.full_step_deg),
             Mechanics::Direct(_) => None,
         };
-        // An axis without a motor has the list's, and without a list the default one.
+        // An axis without a motor has the motor of the plant's list, or else the default motor.
         if axis.motor.is_none() && (listed || full_step_deg.is_none()) {
             continue;
         }

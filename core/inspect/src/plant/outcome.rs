@@ -1,52 +1,42 @@
 //! Results of a plant as text and series, and the settling time of a motor's supply current (PLANT F8).
 
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec,
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec, vec::Vec};
 use core::fmt::Write as _;
-use stepscope_peripheral::{
-    signal::{Levels, Record},
-    units::Instant,
-};
-use stepscope_plant::{
-    Plant, Refused,
-    measures::{MotorResult, Peak},
-    parameters::Setup,
-    settling::{REST_STEPS, SensorLog, StepResponse},
-};
+use stepscope_peripheral::signal::{Levels, Record};
+use stepscope_peripheral::units::Instant;
+use stepscope_plant::measures::{MotorResult, Peak};
+use stepscope_plant::settling::{REST_STEPS, SensorLog, StepResponse};
+use stepscope_plant::{Plant, Refused, parameters::Setup};
 
-/// Following error in full steps above which the field hardly holds the rotor.
-const FAR: f64 = 2.0;
+/// Following error in full steps from which the verdict reports it.
+const LARGE_ERROR: f64 = 2.0;
 
-/// Half an electrical period in full steps: more per grid step is a throw, not a turn.
+/// Half an electrical period in full steps; a rotor that moves farther in one grid step is not simulated correctly.
 const HALF_PERIOD: f64 = 2.0;
 const TURN_DEG: f64 = 360.0;
 
-/// Warns if rotor or load moved more than half a period in one grid step. The result is meaningless then; F3's limits
-/// check only the start.
+/// A warning if rotor or load moved more than half a period in one grid step, so that the result is meaningless.
 pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<String> {
     let motor = setup.motors.get(channel)?;
     let step_s = f64::from(setup.grid_cycles()) / f64::from(setup.clock_hz);
     let Peak { value: fastest, cycle } = found.max_speed;
-    let (of_rotor, of_load) = (fastest * step_s, found.max_load_speed * step_s);
-    let half_turning = 0.5 * TURN_DEG / motor.full_step_deg / motor.sine_per_turn;
-    let what = if of_rotor > HALF_PERIOD {
+    let (rotor, load) = (fastest * step_s, found.max_load_speed * step_s);
+    let half_period = 0.5 * TURN_DEG / motor.full_step_deg / motor.sine_per_turn;
+    let problem = if rotor > HALF_PERIOD {
         format!(
-            "the rotor moves {of_rotor:.1} full steps per grid step, more than half an electrical period (2)"
+            "the rotor moves {rotor:.1} full steps per grid step, more than half an electrical period (2)"
         )
-    } else if motor.sine_torque_mn_m != 0.0 && of_load > half_turning {
+    } else if motor.sine_torque_mn_m != 0.0 && load > half_period {
         format!(
-            "the load moves {of_load:.3} full steps per grid step, more than half a period of its turning torque ({half_turning:.3})"
+            "the load moves {load:.3} full steps per grid step, more than half a period of its position-dependent torque ({half_period:.3})"
         )
     } else {
         return None;
     };
     let ms = cycle as f64 / f64::from(setup.clock_hz) * 1e3;
     Some(format!(
-        "{what}, at {ms:.2} ms, so the result is meaningless; use a smaller step_cycles than {}",
+        "{problem}, at {ms:.2} ms, so the result is meaningless; use a smaller step_cycles than {}",
         setup.grid_cycles()
     ))
 }
@@ -54,6 +44,7 @@ pub fn too_coarse(setup: &Setup, channel: usize, found: &MotorResult) -> Option<
 /// Maximum share of unaccounted energy.
 const MAX_ENERGY_ERROR: f64 = 1e-3;
 
+/// A warning if more than 0.1 % of the energy is unaccounted for.
 pub fn energy_left_over(found: &MotorResult) -> Option<String> {
     let error = found.energy.error();
     (error > MAX_ENERGY_ERROR).then(|| {
@@ -61,6 +52,7 @@ pub fn energy_left_over(found: &MotorResult) -> Option<String> {
     })
 }
 
+/// Whether a motor follows, slips or loses steps, as text.
 pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
     let lost = motor.lost.unsigned_abs();
     let ms = |cycle: u64| cycle as f64 / f64::from(clock_hz) * 1e3;
@@ -70,7 +62,7 @@ pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
             format!("slips and recovers; first at {:.2} ms in step {step}", ms(slip.cycle))
         }
         Some(slip) => format!("loses {lost} full steps, first at {:.2} ms in step {step}", ms(slip.cycle)),
-        None if motor.following_error.value.abs() >= FAR => {
+        None if motor.following_error.value.abs() >= LARGE_ERROR => {
             format!("follows, up to {:.2} full steps behind", motor.following_error.value.abs())
         }
         None => "follows".to_string(),
@@ -99,15 +91,17 @@ pub fn values(plant: &Plant) -> Vec<f64> {
     values
 }
 
+/// The CSV header of [`table_row`].
 pub fn table_head(plant: &Plant) -> String {
     format!("cycle,time_s,{}\n", names(plant).join(","))
 }
 
+/// The plant's values at its point as a CSV row.
 pub fn table_row(plant: &Plant) -> String {
     let cycle = plant.cycle();
     let mut row = format!("{cycle},{}", cycle as f64 / plant.clock_hz());
     for value in values(plant) {
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = write!(row, ",{value}");
     }
     row.push('\n');
@@ -117,9 +111,8 @@ pub fn table_row(plant: &Plant) -> String {
 /// A reading of the current sensor: cycles after STEP's rise, and A.
 pub type CurrentAt = (f64, f64);
 
-/// Settling of the supply current after one step to the right, after a rest of ten `t_step` cycles, and the sensor's
-/// readings from `t_step` cycles before the step on. Errors: an empty list if there is no such
-/// channel or sample.
+/// Settling of the supply current to `share` of its change after one step, following a rest of ten `t_step` cycles, and
+/// the sensor's readings from `t_step` cycles before the step on. Fails with an empty list without such a channel.
 pub fn settling(
     setup: &Setup,
     channel: usize,
@@ -145,7 +138,7 @@ mod tests {
     use super::*;
     use stepscope_sim::{Experiment, plant_run::PlantRun};
 
-    /// What is said of the grid in a run with this plant and this motor.
+    /// The warning on the grid of a run with this plant and motor.
     fn warned(plant: &str, motor: &str) -> Option<String> {
         let json = format!(
             r#"{{"plant":{plant},"source":{{"motion":{{"engine":"segments","axes":[{{"motor":{motor}}}]}}}}}}"#
@@ -157,20 +150,23 @@ mod tests {
     }
 
     #[test]
-    fn a_thrown_rotor_is_a_warning_that_a_finer_grid_removes() {
+    fn a_finer_grid_removes_the_warning_on_fast_rotors() {
         let thrown = r#"{"sine_torque_mn_m":1000000,"sine_per_turn":1000}"#;
-        let told = warned("{}", thrown).expect("it is thrown");
+        let warning = warned("{}", thrown).expect("it is thrown");
         assert!(
-            told.starts_with("the rotor moves 15.3 full steps per grid step, more than half an"),
-            "{told}"
+            warning.starts_with("the rotor moves 15.3 full steps per grid step, more than half an"),
+            "{warning}"
         );
-        assert!(told.ends_with("so the result is meaningless; use a smaller step_cycles than 80"), "{told}");
+        assert!(
+            warning.ends_with("so the result is meaningless; use a smaller step_cycles than 80"),
+            "{warning}"
+        );
         assert_eq!(warned(r#"{"step_cycles":8}"#, thrown), None);
         // At about 1000 full steps/s half a period, 0.1 full steps, takes 0.1 ms; a grid step is 0.15 ms.
         let fine = r#"{"sine_torque_mn_m":0.001,"sine_per_turn":1000}"#;
         assert_eq!(warned("{}", fine), None);
-        let told = warned(r#"{"step_cycles":2000}"#, fine);
-        assert!(told.expect("too coarse").starts_with("the load moves 0.1"));
+        let warning = warned(r#"{"step_cycles":2000}"#, fine);
+        assert!(warning.expect("too coarse").starts_with("the load moves 0.1"));
         assert_eq!(warned("{}", "{}"), None);
     }
 

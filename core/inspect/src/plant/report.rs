@@ -3,22 +3,22 @@
 use crate::plant::outcome::{energy_left_over, too_coarse, verdict};
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
-use stepscope_plant::{
-    measures::{MotorResult, Peak, PlantResult},
-    parameters::Setup,
-};
+use stepscope_plant::measures::{MotorResult, Peak, PlantResult};
+use stepscope_plant::parameters::Setup;
 use stepscope_sim::{Experiment, Run};
 
+/// The report of motor_of controller's plant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlantReport {
-    pub plant: Whole,
+    pub plant: PlantSummary,
     pub motors: Vec<Motor>,
     pub slips: Vec<Slip>,
     pub self_test: Vec<SelfTest>,
 }
 
+/// Supply, sensor and protection.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Whole {
+pub struct PlantSummary {
     pub controller: usize,
     pub digest: String,
     pub cycle: u64,
@@ -34,6 +34,7 @@ pub struct Whole {
     pub overload_cycle: Option<u64>,
 }
 
+/// One motor: position, currents and energy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Motor {
     pub channel: usize,
@@ -62,13 +63,16 @@ pub struct Motor {
     pub energy_left_over: Option<String>,
 }
 
+/// One slip of a motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Slip {
     pub channel: usize,
     pub cycle: u64,
+    /// Whether the rotor fell behind; otherwise it ran ahead.
     pub behind: bool,
 }
 
+/// The settling time that the self-test measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct SelfTest {
     pub channel: usize,
@@ -84,8 +88,8 @@ impl PlantReport {
         let found = run.self_test(controller).iter().enumerate();
         let motors = result.motors.iter().enumerate();
         Some(Self {
-            plant: whole(&result, controller, clock_hz, run.overload(controller)),
-            motors: motors.clone().map(|(channel, motor)| one(channel, motor, setup)).collect(),
+            plant: summary_of(&result, controller, clock_hz, run.overload(controller)),
+            motors: motors.clone().map(|(channel, motor)| motor_of(channel, motor, setup)).collect(),
             slips: motors
                 .flat_map(|(channel, motor)| {
                     motor.slips.iter().map(move |slip| Slip {
@@ -102,9 +106,14 @@ impl PlantReport {
     }
 }
 
-fn whole(result: &PlantResult, controller: usize, clock_hz: f64, overload_cycle: Option<u64>) -> Whole {
+fn summary_of(
+    result: &PlantResult,
+    controller: usize,
+    clock_hz: f64,
+    overload_cycle: Option<u64>,
+) -> PlantSummary {
     let (load, bus) = (&result.load_a, &result.bus_v);
-    Whole {
+    PlantSummary {
         controller,
         digest: format!("{:016x}", result.digest),
         cycle: result.cycle,
@@ -120,7 +129,7 @@ fn whole(result: &PlantResult, controller: usize, clock_hz: f64, overload_cycle:
     }
 }
 
-fn one(channel: usize, motor: &MotorResult, setup: &Setup) -> Motor {
+fn motor_of(channel: usize, motor: &MotorResult, setup: &Setup) -> Motor {
     let clock_hz = f64::from(setup.clock_hz);
     let Peak { value: error, cycle: at } = motor.following_error;
     let energy = &motor.energy;
@@ -148,20 +157,5 @@ fn one(channel: usize, motor: &MotorResult, setup: &Setup) -> Motor {
         fastest_full_steps_s: motor.max_speed.value,
         grid_too_coarse: too_coarse(setup, channel, motor),
         energy_left_over: energy_left_over(motor),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn a_run_with_a_plant_has_a_report() {
-        use crate::plant::report::PlantReport;
-        use stepscope_sim::{Experiment, plant_run::PlantRun};
-
-        let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
-        let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
-        run.finish();
-        let report = PlantReport::of(&experiment, &run, 0).expect("it has one");
-        assert_eq!(report.motors[0].verdict, "follows");
     }
 }

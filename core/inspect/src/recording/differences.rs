@@ -4,11 +4,13 @@ use super::{alignment::Alignment, side::Kind, tolerance::Tolerance};
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 
+/// Maximum listed differences.
 pub const MAX_LISTED: usize = 100_000;
 
+/// How steps or bytes differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum What {
+pub enum DifferenceKind {
     Missing,
     Extra,
     Direction,
@@ -19,7 +21,8 @@ pub enum What {
 /// Neighboring steps or bytes that differ in the same way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
-    pub what: What,
+    #[serde(rename = "what")]
+    pub kind: DifferenceKind,
     pub count: usize,
     /// The first in the plan, from 0; for extra ones the planned step before them.
     pub step: Option<usize>,
@@ -27,19 +30,22 @@ pub struct Difference {
     pub recorded_step: Option<usize>,
     /// When it was recorded or due, in s of the recording.
     pub recorded_s: f64,
+    /// The largest of them; `None` for missing and extra ones.
     pub late_s: Option<f64>,
     pub planned_value: Option<u8>,
     pub recorded_value: Option<u8>,
 }
 
+/// All differences.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Differences {
     pub listed: Vec<Difference>,
+    /// Including those not listed.
     pub count: usize,
 }
 
 impl Differences {
-    /// A step that is off by exactly `within` is not late.
+    /// A step that is deviation by exactly `within` is not late.
     pub fn of(alignment: &Alignment<'_>, within: Tolerance) -> Self {
         let mut found = Self::default();
         let (mut model, mut recorded, mut index) = (0, 0, 0);
@@ -49,12 +55,12 @@ impl Differences {
             for _ in 0..run.count {
                 let next = alignment.difference(index, within);
                 match (&mut last, next) {
-                    (Some(of), Some(next)) if of.what == next.what => of.join(next),
-                    _ => found.extend(core::mem::replace(&mut last, next)),
+                    (Some(of), Some(next)) if of.kind == next.kind => of.join(next),
+                    _ => found.add(core::mem::replace(&mut last, next)),
                 }
                 index += 1;
             }
-            found.extend(last);
+            found.add(last);
             (model, recorded) = (run.model + run.count, run.recorded + run.count);
         }
         let (planned, came) = (alignment.model.steps.len(), alignment.recorded.steps.len());
@@ -62,7 +68,7 @@ impl Differences {
         found
     }
 
-    fn extend(&mut self, next: Option<Difference>) {
+    fn add(&mut self, next: Option<Difference>) {
         let Some(next) = next else { return };
         self.count += 1;
         if self.listed.len() < MAX_LISTED {
@@ -72,7 +78,7 @@ impl Differences {
 
     fn gap(&mut self, of: &Alignment<'_>, missing: core::ops::Range<usize>, extra: core::ops::Range<usize>) {
         let none = Difference {
-            what: What::Missing,
+            kind: DifferenceKind::Missing,
             count: missing.len(),
             step: Some(missing.start),
             recorded_step: extra.start.checked_sub(1),
@@ -82,12 +88,12 @@ impl Differences {
             recorded_value: None,
         };
         if !missing.is_empty() {
-            self.extend(Some(Difference { recorded_s: of.due_s(missing.start), ..none }));
+            self.add(Some(Difference { recorded_s: of.due_s(missing.start), ..none }));
         }
         if !extra.is_empty() {
             let cycle = of.recorded.steps.get(extra.start).map_or(0, |step| step.cycle);
-            self.extend(Some(Difference {
-                what: What::Extra,
+            self.add(Some(Difference {
+                kind: DifferenceKind::Extra,
                 count: extra.len(),
                 step: missing.start.checked_sub(1),
                 recorded_step: Some(extra.start),
@@ -102,22 +108,22 @@ impl Differences {
 
 impl Alignment<'_> {
     fn difference(&self, index: usize, within: Tolerance) -> Option<Difference> {
-        let off = self.off(index)?;
-        let what = match (off.other_direction, off.other_value) {
-            (true, _) => What::Direction,
-            (_, true) => What::Value,
-            _ if self.is_late(index, within) => What::Late,
+        let deviation = self.deviation(index)?;
+        let kind = match (deviation.other_direction, deviation.other_value) {
+            (true, _) => DifferenceKind::Direction,
+            (_, true) => DifferenceKind::Value,
+            _ if self.is_late(index, within) => DifferenceKind::Late,
             _ => return None,
         };
         Some(Difference {
-            what,
+            kind,
             count: 1,
-            step: Some(off.step),
-            recorded_step: Some(off.recorded_step),
-            recorded_s: off.recorded_s,
-            late_s: Some(off.late_s),
-            planned_value: self.model.values.get(off.step).copied(),
-            recorded_value: self.recorded.values.get(off.recorded_step).copied(),
+            step: Some(deviation.step),
+            recorded_step: Some(deviation.recorded_step),
+            recorded_s: deviation.recorded_s,
+            late_s: Some(deviation.late_s),
+            planned_value: self.model.values.get(deviation.step).copied(),
+            recorded_value: self.recorded.values.get(deviation.recorded_step).copied(),
         })
     }
 }
@@ -132,39 +138,45 @@ impl Difference {
     }
 
     /// Such as "1 step missing after step 1999, at 225.6 ms".
-    pub fn to_text(&self, kind: Kind) -> String {
-        let one = kind.singular();
+    pub fn to_text(&self, unit: Kind) -> String {
+        let one = unit.singular();
         let counted =
-            if self.count == 1 { format!("1 {one}") } else { format!("{} {}", self.count, kind.plural()) };
+            if self.count == 1 { format!("1 {one}") } else { format!("{} {}", self.count, unit.plural()) };
         let at = time(self.recorded_s);
         let step = self.step.unwrap_or(0);
         let late_s = self.late_s.unwrap_or(0.0);
         let size = format!("{:.3} us", libm::fabs(late_s) * 1e6);
         let early = if late_s < 0.0 { "early" } else { "late" };
-        match self.what {
-            What::Missing if step == 0 => {
+        match self.kind {
+            DifferenceKind::Missing if step == 0 => {
                 format!("{counted} missing before the first recorded {one}, at {at}")
             }
-            What::Missing => format!("{counted} missing after {one} {}, at {at}", step - 1),
-            What::Extra => {
+            DifferenceKind::Missing => format!("{counted} missing after {one} {}, at {at}", step - 1),
+            DifferenceKind::Extra => {
                 let extra =
-                    format!("{} extra {}", self.count, if self.count == 1 { one } else { kind.plural() });
+                    format!("{} extra {}", self.count, if self.count == 1 { one } else { unit.plural() });
                 match self.step {
                     Some(step) => format!("{extra} after {one} {step}, at {at}"),
                     None => format!("{extra} before {one} 0, at {at}"),
                 }
             }
-            What::Direction if self.count == 1 => format!("{one} {step} in the wrong direction, at {at}"),
-            What::Direction => format!("{counted} in the wrong direction from {one} {step}, at {at}"),
-            What::Value if self.count == 1 => {
+            DifferenceKind::Direction if self.count == 1 => {
+                format!("{one} {step} in the wrong direction, at {at}")
+            }
+            DifferenceKind::Direction => {
+                format!("{counted} in the wrong direction from {one} {step}, at {at}")
+            }
+            DifferenceKind::Value if self.count == 1 => {
                 let value =
                     |value: Option<u8>| value.map_or_else(String::new, |value| format!("{value:02x}"));
                 let (own, planned) = (value(self.recorded_value), value(self.planned_value));
                 format!("{one} {step} is {own} instead of {planned}, at {at}")
             }
-            What::Value => format!("{counted} with another value from {one} {step}, at {at}"),
-            What::Late if self.count == 1 => format!("{one} {step} is {size} {early}, at {at}"),
-            What::Late => format!("{counted} off by up to {size} ({early}) from {one} {step}, at {at}"),
+            DifferenceKind::Value => format!("{counted} with another value from {one} {step}, at {at}"),
+            DifferenceKind::Late if self.count == 1 => format!("{one} {step} is {size} {early}, at {at}"),
+            DifferenceKind::Late => {
+                format!("{counted} off by up to {size} ({early}) from {one} {step}, at {at}")
+            }
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Clock drift: a line through lateness over time that outliers do not tilt.
 //!
 //! ```text
-//! late               .  excluded        1. slope: the median of those from each event to the one a quarter of all later
-//! |                    . - '           2. excluded: events farther from its line, moved to the median, than
-//!   |          . - ' . '                    6 median deviations and a cycle
-//!   |  . - ' .                           3. the least squares' line through the others
+//! late               .  excluded        1. slope: median of the slopes from each event to the one n/4 events later
+//! |                    . - '           2. excluded: events whose distance from that line exceeds 6 median
+//!   |          . - ' . '                    deviations and a cycle
+//!   |  . - ' .                           3. least-squares line through the other events
 //!   +------------------------> time
 //! ```
 //!
@@ -13,9 +13,9 @@
 
 use alloc::vec::Vec;
 
-/// Maximum events of the medians; of more every second, third, ... is taken.
+/// Maximum events for the medians; of more, only every second, third, … is used.
 const MAX_SAMPLED: usize = 1 << 20;
-/// Pairs are this part of all events apart.
+/// Events of a pair are this fraction of all events apart.
 const PART: usize = 4;
 /// About four standard deviations.
 const DEVIATIONS: f64 = 6.0;
@@ -40,7 +40,7 @@ impl Drift {
         let middle = median(sampled.iter().copied().map(left).collect());
         let off = |event: (f64, f64)| libm::fabs(left(event) - middle);
         let within_s = DEVIATIONS * median(sampled.iter().copied().map(off).collect()) + cycle_s;
-        // Least squares about the means, of what the first slope leaves.
+        // Least squares about the means, of the lateness without the first slope.
         let counting = || (0..count).filter_map(&event).filter(|event| off(*event) <= within_s);
         let (mut n, mut times, mut sum) = (0.0, 0.0, 0.0);
         for event in counting() {
@@ -50,14 +50,14 @@ impl Drift {
             return Self { slope, late_s: middle, within_s };
         }
         let (mean_time, mean) = (times / n, sum / n);
-        let (mut both, mut spread) = (0.0, 0.0);
+        let (mut covariance, mut variance) = (0.0, 0.0);
         for event in counting() {
             let time = event.0 - mean_time;
-            both += time * (left(event) - mean);
-            spread += time * time;
+            covariance += time * (left(event) - mean);
+            variance += time * time;
         }
-        let more = if spread > 0.0 { both / spread } else { 0.0 };
-        Self { slope: slope + more, late_s: mean - more * mean_time, within_s }
+        let correction = if variance > 0.0 { covariance / variance } else { 0.0 };
+        Self { slope: slope + correction, late_s: mean - correction * mean_time, within_s }
     }
 
     /// The lateness that the line does not explain, in s.
@@ -88,7 +88,7 @@ fn median(mut of: Vec<f64>) -> f64 {
 mod tests {
     use super::*;
 
-    /// Noise in 0..1 that is the same everywhere.
+    /// Reproducible noise in 0..1.
     fn noise(k: usize) -> f64 {
         ((k as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn single_late_events_and_a_pause_leave_the_drift() {
+    fn late_events_and_a_pause_do_not_change_the_drift() {
         let jitter = |k| 2e-6 * noise(k);
         for ppm in [-300.0, 0.0, 50.0] {
             // One of a thousand is late by 10 ms: anywhere, also the first and the last.
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drift_of_less_than_a_cycle_is_seen_through_coarse_samples() {
+    fn a_drift_below_one_cycle_is_measured() {
         // 100 ms in samples of 1 us: 15 ppm come to a sample and a half.
         check(200, 5e-4, 1e-6, 15.0, 4.0, |k| 1e-6 * noise(k));
         check(200, 5e-4, 1e-6, 0.0, 4.0, |k| 1e-6 * noise(k));

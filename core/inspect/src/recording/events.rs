@@ -1,22 +1,15 @@
 //! The events to compare: the steps of a channel or, without steps, the bytes of RX.
 
-use super::{
-    alignment::{Alignment, Comparison, ExactTimes, Side},
-    differences::Differences,
-    matching::Matching,
-    serial::DecodedLine,
-    tolerance::Tolerance,
-};
+use super::alignment::{Alignment, Comparison, ExactTimes, Side};
+use super::{differences::Differences, matching::Matching, serial::DecodedLine, tolerance::Tolerance};
 use alloc::vec::Vec;
 use serde::Serialize;
-use stepscope_peripheral::trace::Step;
-use stepscope_peripheral::{
-    signal::{Levels, Record},
-    trace::steps,
-};
+use stepscope_peripheral::signal::{Levels, Record};
+use stepscope_peripheral::{trace::Step, trace::steps};
 
 pub use super::side::Kind;
 
+/// Steps or bytes with their times.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Events {
     pub kind: Kind,
@@ -26,6 +19,7 @@ pub struct Events {
     exact: Option<ExactTimes>,
 }
 
+/// The result of a comparison.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EventComparison {
     pub kind: Kind,
@@ -35,20 +29,24 @@ pub struct EventComparison {
     #[serde(skip)]
     pub matching: Matching,
     #[serde(skip)]
+    /// The planned and the recorded event of the shared instant.
     pub aligned: (usize, usize),
 }
 
 impl EventComparison {
+    /// Whether the recording equals the plan within the tolerance.
     pub const fn is_same(&self) -> bool {
         self.comparison.is_same()
     }
 }
 
 impl Events {
+    /// Steps in cycles of `clock_hz`.
     pub const fn of_steps(steps: Vec<Step>, clock_hz: u32) -> Self {
         Self { kind: Kind::Steps, clock_hz, steps, values: Vec::new(), exact: None }
     }
 
+    /// The bytes of a line, in cycles of `clock_hz`.
     pub fn of_bytes(decoded: &DecodedLine, clock_hz: u32) -> Self {
         let step =
             |(position, byte): (i32, &super::serial::DecodedByte)| Step { cycle: byte.start.0, position };
@@ -77,20 +75,22 @@ impl Events {
         }
     }
 
+    /// Time of event `index` in s.
     pub fn at_s(&self, index: usize) -> Option<f64> {
         self.steps.get(index).map(|step| step.cycle as f64 / f64::from(self.clock_hz))
     }
 
+    /// Number of events.
     pub const fn len(&self) -> usize {
         self.steps.len()
     }
 
+    /// Whether there is no event.
     pub const fn is_empty(&self) -> bool {
         self.steps.is_empty()
     }
 
-    /// Compares with a plan. Number `aligned` of the plan, or the first that both have, gives the shared instant;
-    /// `None` where there is none.
+    /// Compares with a plan. The shared instant is planned event `aligned`, or the first match; `None` without it.
     pub fn compare(
         &self,
         model: &Self,
@@ -108,6 +108,7 @@ impl Events {
         })
     }
 
+    /// The alignment of a comparison with `model`.
     pub fn alignment<'a>(&'a self, model: &'a Self, found: &EventComparison) -> Alignment<'a> {
         let (recorded, model) = (self.side(), model.side());
         Alignment {

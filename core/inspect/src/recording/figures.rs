@@ -6,7 +6,7 @@ use serde::Serialize;
 use stepscope_peripheral::trace::Step;
 
 /// Rates are 1/interval from step to step; times are in s.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct StepFigures {
     pub steps: u64,
     pub right: u64,
@@ -40,28 +40,11 @@ impl StepFigures {
         let mut steps = steps.into_iter();
         let first = steps.next()?;
         let seconds = |cycle: u64| cycle as f64 / hz;
-        let mut found = Self {
-            steps: 0,
-            right: 0,
-            left: 0,
-            turns: 0,
-            position: 0,
-            least_position: 0,
-            greatest_position: 0,
-            first_s: seconds(first.cycle),
-            last_s: 0.0,
-            shortest_interval_s: None,
-            shortest_at_s: None,
-            longest_interval_s: None,
-            greatest_rate_steps_s: None,
-            mean_rate_steps_s: None,
-            greatest_acceleration_steps_s2: None,
-            greatest_interval_change: None,
-        };
+        let mut found = Self { first_s: seconds(first.cycle), ..Self::default() };
         let (mut shortest, mut longest) = (None::<(u64, u64)>, None::<u64>);
         let mut acceleration =
             Acceleration { hz, steps: VecDeque::with_capacity(2 * HALF + 1), certain: None, any: None };
-        let (mut last, mut direction, mut length) = (first, 0, None::<u64>);
+        let (mut last, mut direction, mut interval_before) = (first, 0, None::<u64>);
         for step in core::iter::once(first).chain(steps) {
             let now =
                 if found.steps == 0 { step.position } else { step.position.wrapping_sub(last.position) };
@@ -73,17 +56,15 @@ impl StepFigures {
                 let turned = now != direction;
                 found.turns += u64::from(turned);
                 let interval = step.cycle - last.cycle;
-                if shortest.is_none_or(|(least, _)| interval < least) {
+                if shortest.is_none_or(|(min, _)| interval < min) {
                     shortest = Some((interval, step.cycle));
                 }
                 longest = longest.max(Some(interval));
-                if let Some(length) = length.filter(|length| !turned && *length > 0) {
-                    let part = interval.abs_diff(length) as f64 / length as f64;
-                    let known = found.greatest_interval_change;
-                    found.greatest_interval_change =
-                        Some(known.map_or(part, |known| libm::fmax(known, part)));
+                if let Some(before) = interval_before.filter(|before| !turned && *before > 0) {
+                    let change = interval.abs_diff(before) as f64 / before as f64;
+                    found.greatest_interval_change = max_of(found.greatest_interval_change, change);
                 }
-                length = if turned { None } else { Some(interval) };
+                interval_before = if turned { None } else { Some(interval) };
             }
             found.steps += 1;
             (last, direction) = (step, now);
@@ -97,11 +78,16 @@ impl StepFigures {
         let span = last.cycle - first.cycle;
         found.mean_rate_steps_s = (span > 0).then(|| (found.steps - 1) as f64 / seconds(span));
         let spread = shortest.zip(longest).map_or(0, |((shortest, _), longest)| longest - shortest);
-        found.greatest_acceleration_steps_s2 = acceleration.greatest(spread);
+        found.greatest_acceleration_steps_s2 = acceleration.max(spread);
         Some(found)
     }
 }
 
+fn max_of(known: Option<f64>, value: f64) -> Option<f64> {
+    Some(known.map_or(value, |known| libm::fmax(known, value)))
+}
+
+/// The maximum acceleration of a stream of steps.
 struct Acceleration {
     hz: f64,
     steps: VecDeque<Step>,
@@ -124,14 +110,13 @@ impl Acceleration {
         let explained =
             span(0).zip(span(HALF)).is_some_and(|(first, second)| first.abs_diff(second) <= ROUNDING);
         let found = libm::fabs(found);
-        let greater = |known: Option<f64>, found| Some(known.map_or(found, |known| libm::fmax(known, found)));
-        self.certain = greater(self.certain, if explained { 0.0 } else { found });
-        self.any = greater(self.any, found);
+        self.certain = max_of(self.certain, if explained { 0.0 } else { found });
+        self.any = max_of(self.any, found);
     }
 
     /// The maximum for intervals that differ by up to `spread` cycles. A slow change shows even where rounding
     /// explains each single one.
-    fn greatest(&self, spread: u64) -> Option<f64> {
+    fn max(&self, spread: u64) -> Option<f64> {
         if self.certain == Some(0.0) && spread > ROUNDING { self.any } else { self.certain }
     }
 }

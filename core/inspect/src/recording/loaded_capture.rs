@@ -9,37 +9,21 @@ mod tests;
 
 pub use align::Misaligned;
 
-use super::{
-    alignment::ExactTimes,
-    events::Events,
-    open_options::{OpenError, OpenOptions, USUAL_CLOCK_HZ},
-    overview::Overview,
-    remedy::Note,
-    report::{ChannelReport, Report, Survey, steps},
-};
-use crate::{
-    motion::curves::{Actual, Window},
-    trace::timing::TimingCheck,
-};
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use super::open_options::{DEFAULT_CLOCK_HZ, OpenError, OpenOptions};
+use super::report::{ChannelReport, Report, Survey, steps};
+use super::{alignment::ExactTimes, events::Events, overview::Overview, remedy::Note};
+use crate::motion::curves::{Actual, Window};
+use crate::trace::timing::TimingCheck;
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
 use serde::Serialize;
-use stepscope_capture::{
-    Capture, ChannelMap, RecordedSignals,
-    channel_map::{PulseSource, channel_text},
-    recorded::Records,
-    timebase::Timebase,
-};
-use stepscope_peripheral::{
-    signal::{Record, Sink},
-    trace::{self, Step},
-};
+use stepscope_capture::channel_map::{PulseSource, channel_text};
+use stepscope_capture::{Capture, ChannelMap, RecordedSignals, recorded::Records, timebase::Timebase};
+use stepscope_peripheral::signal::{Record, Sink};
+use stepscope_peripheral::trace::{self, Step};
 use stepscope_scenario::TimingRules;
 
-/// Which records to load of a long recording; the report always covers all.
+/// The part of a long recording to load; the report always covers all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
     pub max_records: usize,
@@ -47,20 +31,23 @@ pub struct Part {
     pub to_s: Option<f64>,
 }
 
+/// The part that is loaded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LoadedPart {
     pub from_s: f64,
     pub to_s: f64,
     pub end_s: f64,
+    /// Loaded records, of all records of the recording.
     pub records: usize,
     pub of: usize,
 }
 
 /// A capture in cycles, with its report.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadedCapture {
     pub format: String,
-    pub what: &'static str,
+    /// `changes`, `bytes` or `positions`, and their number.
+    pub contents: &'static str,
     pub count: usize,
     pub names: Vec<String>,
     pub notes: Vec<Note>,
@@ -92,7 +79,7 @@ impl LoadedCapture {
     pub fn new(capture: Capture, options: &OpenOptions) -> Result<Self, OpenError> {
         let (mut loaded, map, base) = Self::prepare(&capture, options)?;
         let Some(base) = base else { return loaded.back_to_back(&capture, options, &map).map(|()| loaded) };
-        let report = loaded.without_levels(&capture, base, options, &map)?;
+        let report = loaded.report_without_levels(&capture, base, options, &map)?;
         let (exact, lines) = (loaded.exact_channels(&capture, &map, base, options), options.lines()?);
         let others = others_rounded(&capture, base, loaded.clock_hz);
         loaded.note_exact_steps(&capture, &map, base);
@@ -118,17 +105,14 @@ impl LoadedCapture {
         let (mut loaded, map, base) = Self::prepare(capture, options)?;
         let Some(base) = base else { return loaded.back_to_back(capture, options, &map).map(|()| loaded) };
         let clock_hz = loaded.clock_hz;
-        let report = loaded.without_levels(capture, base, options, &map)?;
+        let report = loaded.report_without_levels(capture, base, options, &map)?;
         // Without levels there is only the record of reset.
         if capture.changes.is_empty() {
             let none = Capture { end: capture.end, ..Capture::new(capture.format) };
             let recorded = RecordedSignals::new(none, &map, base, clock_hz).map_err(OpenError::TooLate)?;
             loaded.note_rounding(recorded.rounding, others_rounded(capture, base, clock_hz));
             loaded.records = recorded.records;
-            loaded.set_report(
-                report.unwrap_or_else(|| Report { channels: Vec::new(), lines: Vec::new() }),
-                &map,
-            )?;
+            loaded.set_report(report.unwrap_or_default(), &map)?;
             return Ok(loaded);
         }
         let all = Records::new(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
@@ -194,7 +178,7 @@ impl LoadedCapture {
         let (loaded, map, base) = Self::prepare(capture, options)?;
         let Some(base) = base.filter(|base| loaded.has_better_ticks(capture, *base)) else { return Ok(None) };
         let mut check = TimingCheck::in_ticks(rules, base.parts(), max_listed);
-        loaded.unchecked().for_each(|(channel, rule)| check.leave_out(channel, rule));
+        loaded.unchecked().for_each(|(channel, rule)| check.exclude(channel, rule));
         Records::in_ticks(capture, &map).for_each(|record| check.record(record));
         Ok(Some((check, base)))
     }
@@ -226,7 +210,7 @@ impl LoadedCapture {
             }
             self.records.push(record);
         }
-        // The part ends before the first record without room.
+        // The part ends before the first record that does not fit.
         let to_s = next.filter(|next| *next <= to).map_or(to_s, |next| next as f64 / hz);
         self.part = Some(LoadedPart { from_s, to_s, end_s: self.end_s, records: self.records.len(), of });
         self.end_s = to_s;
@@ -249,29 +233,21 @@ impl LoadedCapture {
         if !capture.changes.is_empty() && map.entries().is_empty() {
             return Err(OpenError::NoMap { example: example(capture), names });
         }
-        let what = match () {
+        let contents = match () {
             () if !capture.bytes.is_empty() => "bytes",
             () if !capture.positions.is_empty() => "positions",
             () => "changes",
         };
         let mut loaded = Self {
             format: capture.format.to_string(),
-            what,
+            contents,
             count: capture.len(),
             names,
             notes: capture.notes.iter().cloned().map(Note::from).collect(),
             map: map.to_text(capture),
-            clock_hz: USUAL_CLOCK_HZ,
-            rounding: String::new(),
-            is_rounded: false,
+            clock_hz: DEFAULT_CLOCK_HZ,
             channels: map.bus_channels(),
-            records: Vec::new(),
-            part: None,
-            end_s: 0.0,
-            report: Report { channels: Vec::new(), lines: Vec::new() },
-            position_steps: None,
-            exact_steps: Vec::new(),
-            generated_pulses: Vec::new(),
+            ..Self::default()
         };
         if !capture.changes.is_empty() {
             loaded.note_edges(capture, &map);
@@ -290,6 +266,7 @@ impl LoadedCapture {
         Ok((loaded, map, base))
     }
 
+    /// The steps of a channel.
     pub fn steps_of(&self, channel: u8) -> Vec<Step> {
         match &self.position_steps {
             Some(steps) if channel == 0 => steps.clone(),
@@ -298,6 +275,7 @@ impl LoadedCapture {
         }
     }
 
+    /// The events to compare: steps of a channel or, without any steps, the bytes of RX.
     pub fn events(&self, channel: u8) -> Events {
         match self.report.rx().filter(|_| self.report.channels.is_empty()) {
             Some(line) => Events::of_bytes(&line.decoded, self.clock_hz),
@@ -309,8 +287,9 @@ impl LoadedCapture {
         }
     }
 
+    /// Whether it has levels; otherwise bytes or positions.
     pub fn has_levels(&self) -> bool {
-        self.what == "changes"
+        self.contents == "changes"
     }
 }
 

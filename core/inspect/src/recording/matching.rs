@@ -5,9 +5,10 @@
 //! recorded   |   |       |   | : |              (one missing), then planned 5.. with recorded 5.. (one extra)
 //! ```
 //!
-//! A beam search: each hypothesis follows the recording's clock by a filter of offset and rate. A step that is not on
-//! time makes additional hypotheses: missing, extra, late, or a shift. The cheapest wins. It starts from each of the
-//! first pairs of steps. Hypotheses and tried gaps are bounded, so time and memory are linear.
+//! A beam search. Each hypothesis tracks offset and rate of the recording's clock with a filter. A step that is not on
+//! time creates additional hypotheses: missing, extra, late or shifted steps. The one with the lowest cost is the result.
+//! The search starts from each of the first pairs of steps. Hypotheses and tried gaps are limited, so time and memory are
+//! linear in the number of steps.
 
 mod clock;
 mod costs;
@@ -23,6 +24,7 @@ pub struct Run {
     pub model: usize,
     pub recorded: usize,
     pub count: usize,
+    /// Matched steps before this run.
     before: usize,
 }
 
@@ -33,6 +35,7 @@ pub struct Matching {
 }
 
 impl Matching {
+    /// Matches the steps of a recording with those of a plan.
     pub fn of(recorded: Side<'_>, model: Side<'_>) -> Self {
         let Some((end, starts)) = Search::new(recorded, model).run() else { return Self::default() };
         let mut found = Self::default();
@@ -46,14 +49,17 @@ impl Matching {
         found
     }
 
+    /// In ascending order.
     pub fn runs(&self) -> &[Run] {
         &self.runs
     }
 
+    /// Number of matched steps.
     pub fn len(&self) -> usize {
         self.runs.last().map_or(0, |last| last.before + last.count)
     }
 
+    /// Whether no step is matched.
     pub const fn is_empty(&self) -> bool {
         self.runs.is_empty()
     }

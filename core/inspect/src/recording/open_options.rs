@@ -1,11 +1,4 @@
-//! Options for opening a capture, and why it cannot be loaded.
-//!
-//! ```
-//! use stepscope_inspect::recording::open_options::{OpenError, OpenOptions};
-//!
-//! assert!(OpenOptions::default().map.is_none()); // the map is proposed
-//! assert!(OpenError::Clock(7).to_string().starts_with("the clock: 7 Hz"));
-//! ```
+//! Options for opening a capture, and the errors.
 
 use super::{remedy::Remedy, serial::LineOptions};
 use alloc::{borrow::ToOwned, string::String, vec::Vec};
@@ -13,7 +6,7 @@ use core::fmt;
 use stepscope_capture::{capture::Format, channel_map::MapError, recorded::TooLate, timebase::Timebase};
 use stepscope_peripheral::config::limits::CLOCK_HZ;
 
-pub(super) const USUAL_CLOCK_HZ: u32 = 16_000_000;
+pub(super) const DEFAULT_CLOCK_HZ: u32 = 16_000_000;
 /// Cycles per tick of the file that an edge needs to become a pulse.
 const CYCLES_PER_EDGE: u64 = 4;
 
@@ -39,8 +32,7 @@ impl OpenOptions {
         Ok(LineOptions { baud: self.baud, format: format.transpose()?.unwrap_or_default() })
     }
 
-    /// The requested clock, or the slowest in which each tick of the file is a whole number of cycles. Position rows and
-    /// single edges need a finer one.
+    /// The requested clock, or the slowest with whole cycles per tick. Position rows and single edges need a finer one.
     pub(super) fn clock(
         &self,
         base: Timebase,
@@ -49,14 +41,14 @@ impl OpenOptions {
     ) -> Result<u32, OpenError> {
         let (min_hz, max) = (*CLOCK_HZ.start(), *CLOCK_HZ.end());
         let own = || {
-            if positions && base.is_exact(USUAL_CLOCK_HZ) {
-                return USUAL_CLOCK_HZ;
+            if positions && base.is_exact(DEFAULT_CLOCK_HZ) {
+                return DEFAULT_CLOCK_HZ;
             }
             let (_, denominator) = base.parts();
             let min_hz =
                 if makes_pulses { min_hz.max(denominator.saturating_mul(CYCLES_PER_EDGE)) } else { min_hz };
-            let whole = min_hz.div_ceil(denominator).checked_mul(denominator);
-            whole.map_or(max, |hz| hz.min(max)) as u32
+            let clock_hz = min_hz.div_ceil(denominator).checked_mul(denominator);
+            clock_hz.map_or(max, |hz| hz.min(max)) as u32
         };
         valid_clock(self.clock_hz.unwrap_or_else(own))
     }
@@ -78,10 +70,12 @@ pub enum OpenError {
     NoSampleRate(Format),
     NoBaud,
     Baud,
+    /// The given UART format, and the allowed ones.
     Uart(String, &'static str),
     /// No steps, and a line cannot be decoded: the reason and remedies.
     NoRate(String, Vec<Remedy>),
     TooLate(TooLate),
+    /// Position rows need more than this number of steps.
     TooManySteps(u64),
 }
 
@@ -91,36 +85,36 @@ impl fmt::Display for OpenError {
             Self::Map(error) => write!(f, "the channel map: {error}"),
             Self::NoMap { .. } => f.write_str("no channel has a known signal"),
             Self::Clock(given) => {
-                write!(f, "the clock: {given} Hz; give {} to {} Hz", CLOCK_HZ.start(), CLOCK_HZ.end())
+                write!(f, "the clock: {given} Hz is out of range; use {} to {} Hz", CLOCK_HZ.start(), CLOCK_HZ.end())
             }
-            Self::SampleRate => f.write_str("the sample rate is 0; give the samples per second, in Hz"),
+            Self::SampleRate => f.write_str("the sample rate is 0; use the samples per second, in Hz"),
             Self::NoSampleRate(format) => f.write_str(match format {
                 Format::Klipper => {
-                    "the log has no CLOCK_FREQ; give the clock of its controller as the sample rate, in Hz, such as 16000000"
+                    "the log has no CLOCK_FREQ; use the clock of its controller as the sample rate, in Hz, such as 16000000"
                 }
                 Format::Annotations => {
-                    "the annotations count samples without a sample rate; give the sample rate of the recording, in Hz"
+                    "the annotations have no sample rate; use the sample rate of the recording, in Hz"
                 }
                 Format::Vcd | Format::SigrokSession | Format::SigrokCsv => {
-                    "the file has no sample rate; give the sample rate in Hz"
+                    "the file has no sample rate; use its sample rate in Hz"
                 }
                 Format::Trace | Format::EdgesCsv => {
-                    "the file has no clock; give the clock as the sample rate in Hz"
+                    "the file has no clock; use its clock as the sample rate in Hz"
                 }
                 _ => {
-                    "the file has no unit of time; give the sample rate in Hz, such as 1000000 for times in µs, or name the unit in the table's header, such as time_us"
+                    "the file has no unit of time; use a sample rate in Hz, such as 1000000 for times in µs, or a table header with the unit, such as time_us"
                 }
             }),
             Self::NoBaud => f.write_str(
-                "the bytes have no times; give the bit rate: they then count as sent back to back",
+                "the bytes have no times; use a bit rate, so that they count as sent back to back",
             ),
-            Self::Baud => f.write_str("the bit rate is 0; give the bits per second"),
+            Self::Baud => f.write_str("the bit rate is 0; use the bits per second"),
             Self::Uart(given, allowed) => write!(f, "the UART format \"{given}\" is not supported; {allowed}"),
             Self::NoRate(why, _) => f.write_str(why),
             Self::TooLate(error) => error.fmt(f),
             Self::TooManySteps(max) => write!(
                 f,
-                "the positions need more than {max} steps, or go beyond 2^31; give a shorter table"
+                "the positions need more than {max} steps, or exceed 2^31; use a shorter table"
             ),
         }
     }

@@ -1,9 +1,9 @@
-//! A recording at a glance: minimum and maximum position and speed per pixel column, in one pass that stores no
-//! steps.
+//! Minimum and maximum of position and speed per pixel column, in one pass that stores no steps.
 
 use crate::motion::curves::{Actual, Band, Window};
 use stepscope_peripheral::trace::Step;
 
+/// Collects the columns of an overview.
 #[derive(Clone, Debug)]
 pub struct Overview {
     window: Window,
@@ -17,6 +17,7 @@ pub struct Overview {
 }
 
 impl Overview {
+    /// The columns of a window of steps in cycles of `hz`.
     pub fn of(steps: impl IntoIterator<Item = Step>, hz: f64, window: Window) -> Actual {
         let mut overview = Self {
             window,
@@ -30,13 +31,13 @@ impl Overview {
         };
         for step in steps {
             overview.take(step);
-            // Its speed reaches past the end.
+            // The first step after the end gives the speed up to the end.
             if step.cycle as f64 / hz > window.end_s {
                 break;
             }
         }
-        overview.reach(window.columns);
-        overview.speed.still(window, overview.moved_to_s, window.end_s);
+        overview.fill_until(window.columns);
+        overview.speed.add_standstill(window, overview.moved_to_s, window.end_s);
         Actual { position: overview.position, speed: overview.speed }
     }
 
@@ -44,28 +45,29 @@ impl Overview {
         let step_s = step.cycle as f64 / self.hz;
         if let Some(last) = self.last.replace(step.cycle).filter(|_| step_s > self.window.start_s) {
             let travel = f64::from(step.position.wrapping_sub(self.position_steps));
-            self.rate(last as f64 / self.hz, step_s, self.hz / (step.cycle - last) as f64 * travel);
+            self.add_speed(last as f64 / self.hz, step_s, self.hz / (step.cycle - last) as f64 * travel);
         }
         if step_s >= self.window.start_s {
             let column = self.window.column(step_s).max(0) as usize;
-            self.reach(column.saturating_add(1).min(self.window.columns));
+            self.fill_until(column.saturating_add(1).min(self.window.columns));
             self.position.take(column, f64::from(step.position));
         }
         self.position_steps = step.position;
     }
 
-    fn reach(&mut self, column: usize) {
+    /// Fills the columns before `column` with the current position.
+    fn fill_until(&mut self, column: usize) {
         for column in self.next..column {
             self.position.take(column, f64::from(self.position_steps));
         }
         self.next = self.next.max(column);
     }
 
-    fn rate(&mut self, from_s: f64, to_s: f64, speed: f64) {
+    fn add_speed(&mut self, from_s: f64, to_s: f64, speed: f64) {
         if from_s >= self.window.end_s {
             return;
         }
-        self.speed.still(self.window, self.moved_to_s, from_s);
+        self.speed.add_standstill(self.window, self.moved_to_s, from_s);
         for column in self.window.columns(from_s, to_s) {
             self.speed.take(column, speed);
         }
@@ -79,7 +81,7 @@ mod tests {
     use crate::motion::{actual_motion::Pulses, curves::actual};
     use alloc::vec::Vec;
 
-    /// Steps there and back, with a rest between, in cycles of 1 us.
+    /// Steps there and back with a dwell, in cycles of 1 us.
     fn steps() -> Vec<Step> {
         let (mut cycle, mut position) = (20_000, 0);
         let there = (0..300_u64).map(|k| (1, 2000 - 6 * k));
@@ -118,15 +120,15 @@ mod tests {
                     );
                 }
             };
-            close(&found.position.min, &expected.position.min, "least position");
-            close(&found.position.max, &expected.position.max, "greatest position");
-            close(&found.speed.min, &expected.speed.min, "least speed");
-            close(&found.speed.max, &expected.speed.max, "greatest speed");
+            close(&found.position.min, &expected.position.min, "min position");
+            close(&found.position.max, &expected.position.max, "max position");
+            close(&found.speed.min, &expected.speed.min, "min speed");
+            close(&found.speed.max, &expected.speed.max, "max speed");
         }
     }
 
     #[test]
-    fn of_no_steps_nothing_moves() {
+    fn without_steps_nothing_moves() {
         let window = Window { start_s: 0.0, end_s: 1.0, columns: 3 };
         let none = Overview::of([], 1e6, window);
         assert_eq!((none.position.max, none.speed.min), (Vec::from([0.0; 3]), Vec::from([0.0; 3])));

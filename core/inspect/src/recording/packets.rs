@@ -1,33 +1,20 @@
-//! Packets on recorded lines in the order of time. Frames (DESIGN A6) end at their delimiter and are checked; other
-//! bytes end at a gap (A5).
+//! Packets on recorded lines, in the order of time. Frames (DESIGN A6) end at their delimiter and have a CRC; other
+//! packets end at a gap (A5).
 
-use super::{
-    report::{LineReport, Report},
-    serial::{GAP_BITS, Guess, line_name},
-};
-use crate::packets::log::RowOutcome;
-use crate::packets::{
-    dissector::{Head, Reading},
-    packet_table::write_fields,
-};
-use alloc::{
-    borrow::ToOwned,
-    string::{String, ToString},
-    vec::Vec,
-};
+use super::report::{LineReport, Report};
+use super::serial::{GAP_BITS, Guess, line_name};
+use crate::packets::dissector::{Dissector, FrameHead};
+use crate::{packets::log::RowOutcome, packets::packet_table::write_fields};
+use alloc::string::{String, ToString};
+use alloc::{borrow::ToOwned, vec::Vec};
 use core::fmt::{self, Write};
 use serde::Serialize;
-use stepscope_peripheral::{
-    config::Protocol,
-    protocol::FrameOutcome,
-    signal::{Levels, PacketOutcome},
-    units::Instant,
-    wire::{
-        bit_times::BYTE_BITS,
-        frame::{DELIMITER, Deframed, Deframer},
-    },
-};
+use stepscope_peripheral::signal::{Levels, PacketOutcome};
+use stepscope_peripheral::wire::bit_times::BYTE_BITS;
+use stepscope_peripheral::wire::frame::{DELIMITER, Deframed, Deframer};
+use stepscope_peripheral::{config::Protocol, protocol::FrameOutcome, units::Instant};
 
+/// One packet on a recorded line.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LinePacket {
     pub line: &'static str,
@@ -37,10 +24,11 @@ pub struct LinePacket {
     pub end_cycle: u64,
     pub bytes: Vec<u8>,
     pub meaning: String,
-    /// The CRC, or what is wrong; empty where there is none.
+    /// `CRC valid`, or the problem; empty for raw packets.
     pub outcome: String,
 }
 
+/// All packets of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packets {
     pub rows: Vec<LinePacket>,
@@ -58,13 +46,13 @@ impl Packets {
         Self { rows, clock_hz }
     }
 
+    /// Number of replies with a valid CRC.
     pub fn replies(&self) -> usize {
         let tx = line_name(Levels::TX);
-        self.rows.iter().filter(|row| row.line == tx && row.outcome == HOLDS).count()
+        self.rows.iter().filter(|row| row.line == tx && row.outcome == CRC_VALID).count()
     }
 
-    /// Writes CSV. Columns shared with `stepscope run --packets` have the same names, so that the file can be opened
-    /// and sent.
+    /// Writes CSV with the column names of `stepscope run --packets`, so that the file can be opened and sent.
     pub fn write_csv(&self, out: &mut impl Write) -> fmt::Result {
         out.write_str("start_cycle,end_cycle,bytes,outcome,kind,line,number,start_s,end_s,gap_s,meaning\n")?;
         let seconds = |cycle: u64| Instant(cycle).seconds(self.clock_hz);
@@ -87,7 +75,7 @@ impl Packets {
     }
 }
 
-const HOLDS: &str = "check holds";
+const CRC_VALID: &str = "CRC valid";
 
 pub(super) struct Found {
     pub(super) start_cycle: u64,
@@ -96,6 +84,7 @@ pub(super) struct Found {
     pub(super) outcome: Option<FrameOutcome>,
 }
 
+/// Splits the bytes of a line into packets.
 pub(super) struct Line<'a> {
     line: &'a LineReport,
     is_framed: bool,
@@ -133,6 +122,7 @@ impl<'a> Line<'a> {
         }));
     }
 
+    /// Calls `take` for each packet, in order.
     pub(super) fn each(&self, mut take: impl FnMut(Found)) {
         let (mut deframer, mut outcome) = (Deframer::default(), None);
         let (mut bytes, mut start_cycle, mut last) = (Vec::new(), 0, 0);
@@ -156,7 +146,7 @@ impl<'a> Line<'a> {
                 continue;
             }
             outcome = match deframer.byte(decoded.byte) {
-                // Classified by destination, whatever its outcome.
+                // Its outcome at the controller is unknown.
                 Some(Deframed::Frame(_)) => Some(FrameOutcome::OtherAddress),
                 Some(Deframed::Short) => Some(FrameOutcome::Short),
                 Some(Deframed::BadCrc { found, expected }) => Some(FrameOutcome::BadCrc { found, expected }),
@@ -178,16 +168,16 @@ impl<'a> Line<'a> {
         let is_known = self.is_framed || matches!(self.line.guess, Guess::Raw { .. }) && !is_tx;
         let row = match outcome {
             Some(outcome) => RowOutcome::Frame(outcome),
-            None if self.is_framed => RowOutcome::Open,
+            None if self.is_framed => RowOutcome::Incomplete,
             None => RowOutcome::Packet(PacketOutcome::Queued),
         };
         let protocol = if self.is_framed { Protocol::Framed } else { Protocol::Raw };
-        let reading = Reading { protocol, addressed: self.addressed, channels: &|_| self.channels };
+        let dissector = Dissector { protocol, addressed: self.addressed, channels: &|_| self.channels };
         let mut meaning = String::new();
         if is_known {
-            reading.summary(&bytes, row, &mut meaning);
+            dissector.summary(&bytes, row, &mut meaning);
         }
-        let is_reply = is_tx || self.is_framed && Head::of(&bytes, row).is_some_and(Head::is_reply);
+        let is_reply = is_tx || self.is_framed && FrameHead::of(&bytes, row).is_some_and(FrameHead::is_reply);
         LinePacket {
             line: self.line.name,
             kind: if is_reply {
@@ -202,7 +192,7 @@ impl<'a> Line<'a> {
             bytes,
             meaning,
             outcome: match outcome {
-                Some(FrameOutcome::OtherAddress) => HOLDS.to_owned(),
+                Some(FrameOutcome::OtherAddress) => CRC_VALID.to_owned(),
                 None if !self.is_framed => String::new(),
                 _ => row.to_string(),
             },
@@ -226,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn the_lines_of_a_framed_run_are_the_rows_that_its_controller_logged() {
+    fn packets_of_a_framed_run_equal_the_log_of_its_controller() {
         for json in [
             r#"{"line":{"protocol":"framed"}}"#,
             r#"{"bus":{"channels":3},"line":{"protocol":"framed","baud":250000},"source":{"motion":{"axes":[{},{},{}]}}}"#,
@@ -242,7 +232,7 @@ mod tests {
                 let (line, kind) = if is_reply { ("TX", "reply") } else { ("RX", "frame") };
                 assert_eq!((found.line, found.kind), (line, kind), "{index}");
                 assert_eq!(found.bytes, log.bytes(index), "{index}");
-                assert_eq!(found.outcome, HOLDS);
+                assert_eq!(found.outcome, CRC_VALID);
                 assert!(found.start_cycle.abs_diff(logged.start.0) <= 139, "{found:?} {logged:?}");
                 assert!(found.end_cycle.abs_diff(logged.end.0) <= 2 * 139, "{found:?} {logged:?}");
             }
@@ -264,7 +254,7 @@ mod tests {
         // Of the replies of a framed run one is spoiled, one is cut off, and a stop bit is low.
         let (recording, _) = run(r#"{"line":{"protocol":"framed"}}"#);
         let mut report = Report::of(&recording.trace, 16_000_000, 1, None);
-        let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
+        let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it has TX");
         tx.decoded.bytes[3].byte ^= 0x40;
         tx.decoded.bytes.pop();
         tx.decoded.framing_errors.push(Instant(5));
@@ -272,7 +262,7 @@ mod tests {
         let tx: Vec<_> = packets.rows.iter().filter(|row| row.line == "TX").collect();
         assert_eq!((tx[0].kind, tx[0].start_cycle, tx[0].bytes.len()), ("byte", 5, 0));
         assert!(tx[1].outcome.contains("CRC") && tx[1].meaning.is_empty(), "{:?}", tx[1]);
-        assert_eq!(tx.last().map(|row| (row.kind, row.outcome.as_str())), Some(("reply", "not complete")));
+        assert_eq!(tx.last().map(|row| (row.kind, row.outcome.as_str())), Some(("reply", "incomplete")));
         let mut table = String::new();
         packets.write_csv(&mut table).expect("a string takes it");
         assert_eq!(table.lines().count(), packets.rows.len() + 1);
@@ -280,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_of_no_known_protocol_are_split_at_gaps_alone() {
+    fn bytes_of_unknown_protocols_are_split_at_gaps() {
         let bytes =
             (0..40).map(|k| DecodedByte { start: Instant(1 + 10 * k + 500 * (k / 30)), byte: k as u8 });
         let decoded = DecodedLine { bytes: bytes.collect(), ..DecodedLine::default() };
@@ -291,26 +281,5 @@ mod tests {
         let rows = Packets::of(&report, 1000, 1, false).rows;
         assert_eq!(rows.iter().map(|row| row.bytes.len()).collect::<Vec<_>>(), [30, 10], "{rows:?}");
         assert!(rows.iter().all(|row| row.meaning.is_empty() && row.outcome.is_empty()), "{rows:?}");
-    }
-
-    #[test]
-    fn packets_of_a_recorded_line() {
-        use crate::recording::{packets::Packets, report::Report};
-        use crate::trace::stored_run::Recording;
-        use stepscope_sim::Experiment;
-
-        // A framed link, as a logic analyzer would have seen it: each frame of the host is answered.
-        let mut recording = Recording::default();
-        Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#)
-            .expect("the default motion, framed")
-            .run(&mut recording);
-        let report = Report::of(&recording.trace, 16_000_000, 1, None);
-        let packets = Packets::of(&report, 16_000_000, 1, false);
-        let known =
-            |index: usize| packets.rows.get(index).map(|row| (row.line, row.kind, row.meaning.as_str()));
-        assert_eq!(known(0), Some(("RX", "frame", "to 0: STATUS")));
-        assert!(known(1).is_some_and(
-            |(line, kind, meaning)| (line, kind) == ("TX", "reply") && meaning.starts_with("from 0: ")
-        ));
     }
 }

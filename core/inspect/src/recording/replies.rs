@@ -1,41 +1,38 @@
-//! Recorded TX replies as bytes for transfer between workers of the page: start, end, length and controller per reply.
+//! Recorded replies on TX, encoded as bytes to transfer them between workers of the page. Each reply has its start, end,
+//! length and controller, then its bytes.
 
-use super::{
-    packets::{Found, Line},
-    report::Report,
-    serial::line_name,
-};
+use super::packets::{Found, Line};
+use super::{report::Report, serial::line_name};
+use crate::packets::dissector::{FrameHead, parse_reply};
 use crate::packets::log::{PacketLog, RecordedReply, RowOutcome};
-use crate::packets::{
-    dissector::{Head, reply},
-    packet_table::{PacketTable, RowKind},
-};
+use crate::packets::packet_table::{PacketTable, RowKind};
 use alloc::vec::Vec;
 use core::ops::Range;
 use stepscope_peripheral::{signal::Levels, units::Instant};
 use stepscope_sim::{Experiment, Run};
 
+/// Replies encoded for [`decode`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Dealt {
+pub struct EncodedReplies {
     pub bytes: Vec<u8>,
-    /// Packets without a known sender, assigned to the first controller.
+    /// Number of replies without a known controller; they are assigned to the first one.
     pub unknown: usize,
 }
 
-/// Assigns replies on TX to controllers by address. Bytes without an address belong to the last controller addressed
-/// on RX.
-pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &[u8]) -> Dealt {
+/// Encodes the replies on TX within `cycles`, each assigned to a controller by its address. A reply without an address
+/// belongs to the controller that RX addressed last.
+pub fn encode(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &[u8]) -> EncodedReplies {
     let of = |mask| {
         let line = report.lines.iter().find(|line| line.name == line_name(mask));
         line.map(|line| Line::new(line, clock_hz, 0, false))
     };
-    let mut dealt = Dealt::default();
-    let Some(tx) = of(Levels::TX) else { return dealt };
+    let mut encoded = EncodedReplies::default();
+    let Some(tx) = of(Levels::TX) else { return encoded };
     let index_of = |address: u8| addresses.iter().position(|own| *own == address);
     let mut commands: Vec<(u64, usize)> = Vec::new();
     if let Some(rx) = of(Levels::RX).filter(|_| addresses.len() > 1) {
         rx.each(|Found { end_cycle, bytes, outcome, .. }| {
-            let head = outcome.and_then(|outcome| Head::of(&bytes, RowOutcome::Frame(outcome)));
+            let head = outcome.and_then(|outcome| FrameHead::of(&bytes, RowOutcome::Frame(outcome)));
             // RX may carry replies of other controllers.
             let to = head.filter(|head| !head.is_reply()).and_then(|head| index_of(head.address));
             commands.extend(to.map(|to| (end_cycle, to)));
@@ -45,25 +42,26 @@ pub fn to_bytes(report: &Report, clock_hz: u32, cycles: Range<u64>, addresses: &
         if !cycles.contains(&start_cycle) {
             return;
         }
-        let named = reply(&bytes).and_then(|reply| index_of(reply.address));
+        let named = parse_reply(&bytes).and_then(|reply| index_of(reply.address));
         let last = || commands.get(commands.partition_point(|(end, _)| *end <= start_cycle).checked_sub(1)?);
         let controller = named.or_else(|| last().map(|(_, index_of)| *index_of));
-        dealt.unknown += usize::from(controller.is_none() && addresses.len() > 1);
+        encoded.unknown += usize::from(controller.is_none() && addresses.len() > 1);
         let length = bytes.len() as u64 | (controller.unwrap_or(0) as u64) << CONTROLLER_SHIFT;
         for word in [start_cycle, end_cycle, length] {
-            dealt.bytes.extend(word.to_le_bytes());
+            encoded.bytes.extend(word.to_le_bytes());
         }
-        dealt.bytes.extend(bytes);
+        encoded.bytes.extend(bytes);
     });
-    dealt
+    encoded
 }
 
 const CONTROLLER_SHIFT: u32 = 32;
 
-pub fn of(mut bytes: &[u8], controller: usize) -> Vec<RecordedReply<'_>> {
+/// The replies of one controller, up to the first invalid one.
+pub fn decode(mut bytes: &[u8], controller: usize) -> Vec<RecordedReply<'_>> {
     let mut replies = Vec::new();
     let mut last = 0;
-    while let Some(([start, end, length], rest)) = head(bytes) {
+    while let Some(([start, end, length], rest)) = parse_head(bytes) {
         let Some((own, rest)) = rest.split_at_checked(length as u32 as usize) else { break };
         if start < last || end < start {
             break;
@@ -73,20 +71,20 @@ pub fn of(mut bytes: &[u8], controller: usize) -> Vec<RecordedReply<'_>> {
             continue;
         }
         let (start, end) = (Instant(start), Instant(end));
-        replies.push(RecordedReply { start, end, bytes: own, reply: reply(own) });
+        replies.push(RecordedReply { start, end, bytes: own, reply: parse_reply(own) });
     }
     replies
 }
 
-/// Replaces the replies in a controller's finished log: its own, and those that it received of others.
-pub fn put(bytes: &[u8], experiment: &Experiment, run: &Run, controller: usize, log: &mut PacketLog) {
+/// Replaces the replies in a controller's finished log by recorded ones: its own, and those received from others.
+pub fn replace(bytes: &[u8], experiment: &Experiment, run: &Run, controller: usize, log: &mut PacketLog) {
     let table = PacketTable::new(experiment, run, controller, log);
     let is_simulated: Vec<bool> =
         (0..table.len()).map(|row| table.kind(row) == Some(RowKind::Reply)).collect();
-    log.answer(&of(bytes, controller), &is_simulated);
+    log.replace_replies(&decode(bytes, controller), &is_simulated);
 }
 
-fn head(bytes: &[u8]) -> Option<([u64; 3], &[u8])> {
+fn parse_head(bytes: &[u8]) -> Option<([u64; 3], &[u8])> {
     let (numbers, rest) = bytes.split_at_checked(24)?;
     let (words, _) = numbers.as_chunks::<8>();
     let &[start, end, length] = words else { return None };
@@ -108,14 +106,14 @@ mod tests {
         let run = experiment.run(&mut recording);
         recording.packets.finish();
         let simulated = recording.packets.clone();
-        // The device took 500 cycles more for each than the model does; one reply is spoilt on its way.
+        // The device replies 500 cycles later than the model, and one reply is damaged.
         let mut report = Report::of(&recording.trace, 16_000_000, 1, None);
-        let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
+        let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it has TX");
         tx.decoded.bytes.iter_mut().for_each(|byte| byte.start = Instant(byte.start.0 + 500));
         tx.decoded.bytes[3].byte ^= 0x40;
-        let Dealt { bytes, unknown } = to_bytes(&report, 16_000_000, 0..u64::MAX, &[0]);
-        assert_eq!(unknown, 0, "there is but one controller");
-        put(&bytes, &experiment, &run, 0, &mut recording.packets);
+        let EncodedReplies { bytes, unknown } = encode(&report, 16_000_000, 0..u64::MAX, &[0]);
+        assert_eq!(unknown, 0, "there is only one controller");
+        replace(&bytes, &experiment, &run, 0, &mut recording.packets);
 
         let own = PacketTable::new(&experiment, &run, 0, &simulated);
         let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
@@ -127,16 +125,16 @@ mod tests {
         for (nth, &index) in replies.iter().enumerate() {
             let [model, found] = [&own, &table].map(|table| table.detail(index).expect("a row"));
             assert_eq!(found.answers, model.answers, "row {index}");
-            let later =
-                found.turnaround_cycles.expect("it answers") - model.turnaround_cycles.expect("it answers");
+            let later = found.turnaround_cycles.expect("it is a reply")
+                - model.turnaround_cycles.expect("it is a reply");
             assert!(later.abs_diff(500) <= 1, "row {index}: {later}");
-            assert_eq!(found.drive_cycles, None, "when DE rose is not known");
+            assert_eq!(found.drive_cycles, None, "the rise of DE is not recorded");
             assert_eq!(found.row.hex == model.row.hex, nth > 0);
-            let text = if nth == 0 { "recorded: no known reply" } else { model.row.outcome.as_str() };
+            let text = if nth == 0 { "recorded: unknown reply" } else { model.row.outcome.as_str() };
             assert_eq!((found.row.outcome.as_str(), found.row.kind), (text, "reply"));
             assert_eq!(found.check, if nth == 0 { "fails" } else { "holds" });
         }
-        // What the model answered is nowhere left, and what is no reply is as it was.
+        // No simulated reply is left, and other rows are unchanged.
         for index in (0..own.len()).filter(|index| !own.is_own_reply(*index)) {
             assert_eq!(
                 own.row(index).map(|row| (row.start_cycle, row.outcome)),
@@ -153,23 +151,23 @@ mod tests {
         let run = experiment.run_each(&mut recordings);
         recordings.iter_mut().for_each(|one| one.packets.finish());
         let simulated = recordings.each_ref().map(|one| one.packets.clone());
-        // One analyser at the line: TX is low where one of both sends.
+        // One analyzer at the line: TX is low where one of both sends.
         let mut report = Report::of(&recordings[0].trace, 16_000_000, 1, None);
         let others = Report::of(&recordings[1].trace, 16_000_000, 1, None).lines;
-        let others = others.into_iter().find(|line| line.name == "TX").expect("it answers");
-        let line = report.lines.iter_mut().find(|line| line.name == "TX").expect("it answers");
+        let others = others.into_iter().find(|line| line.name == "TX").expect("it has TX");
+        let line = report.lines.iter_mut().find(|line| line.name == "TX").expect("it has TX");
         let first = others.decoded.bytes[0].start;
         line.decoded.bytes.extend(others.decoded.bytes);
         line.decoded.bytes.sort_by_key(|byte| byte.start);
-        // Of the other one the first reply is spoilt.
-        let spoilt = line.decoded.bytes.iter_mut().find(|byte| byte.start == first).expect("it is there");
-        spoilt.byte ^= 0x40;
+        // The first reply of the other controller is damaged.
+        let damaged = line.decoded.bytes.iter_mut().find(|byte| byte.start == first).expect("it is there");
+        damaged.byte ^= 0x40;
         let all = 0..u64::MAX;
-        let Dealt { bytes, unknown } = to_bytes(&report, 16_000_000, all.clone(), &[3, 7]);
+        let EncodedReplies { bytes, unknown } = encode(&report, 16_000_000, all.clone(), &[3, 7]);
         assert_eq!(unknown, 0);
         let addresses = [3, 7];
         for (index, one) in recordings.iter_mut().enumerate() {
-            put(&bytes, &experiment, &run, index, &mut one.packets);
+            replace(&bytes, &experiment, &run, index, &mut one.packets);
             let own = PacketTable::new(&experiment, &run, index, &simulated[index]);
             let table = PacketTable::new(&experiment, &run, index, &one.packets);
             let replies = |table: &PacketTable<'_>| -> Vec<_> {
@@ -180,7 +178,7 @@ mod tests {
             };
             assert_eq!(replies(&table).len(), replies(&own).len());
             assert_eq!(replies(&table)[1..], replies(&own)[1..]);
-            // Of the model's replies there is none, not even heard.
+            // No simulated reply is left, not even a received one.
             for row in (0..table.len()).filter(|row| table.kind(*row) == Some(RowKind::Reply)) {
                 assert!(table.is_own_reply(row), "{row}");
                 assert!(table.address(row).is_none_or(|address| address == addresses[index]), "{row}");
@@ -188,15 +186,15 @@ mod tests {
         }
         // No host sent commands: replies without an address count for the first controller and as unknown.
         report.lines.retain(|line| line.name == "TX");
-        let alone = to_bytes(&report, 16_000_000, all.clone(), &addresses);
-        assert_eq!((alone.unknown, alone.bytes.len()), (1, bytes.len()));
-        assert_eq!(of(&alone.bytes, 0).len(), of(&bytes, 0).len() + 1);
-        // Of one controller there is nothing to ask; of a part there is what begins in it.
-        assert_eq!(to_bytes(&report, 16_000_000, all, &[3]).unknown, 0);
-        let part = to_bytes(&report, 16_000_000, first.0..first.0 + 1, &addresses);
-        assert_eq!((part.unknown, of(&part.bytes, 0).len()), (1, 1));
+        let without_rx = encode(&report, 16_000_000, all.clone(), &addresses);
+        assert_eq!((without_rx.unknown, without_rx.bytes.len()), (1, bytes.len()));
+        assert_eq!(decode(&without_rx.bytes, 0).len(), decode(&bytes, 0).len() + 1);
+        // With one controller none is unknown; a part has the replies that begin in it.
+        assert_eq!(encode(&report, 16_000_000, all, &[3]).unknown, 0);
+        let part = encode(&report, 16_000_000, first.0..first.0 + 1, &addresses);
+        assert_eq!((part.unknown, decode(&part.bytes, 0).len()), (1, 1));
         report.lines.clear();
-        assert_eq!(to_bytes(&report, 16_000_000, 0..u64::MAX, &addresses), Dealt::default());
+        assert_eq!(encode(&report, 16_000_000, 0..u64::MAX, &addresses), EncodedReplies::default());
     }
 
     #[test]
@@ -210,36 +208,19 @@ mod tests {
         let mut others = row(7, 8, &[4]);
         others[20] = 1;
         let two = [row(5, 9, &[1, 2]), row(20, 30, &[3])].concat();
-        let starts = |bytes: &[u8]| of(bytes, 0).iter().map(|reply| reply.start.0).collect::<Vec<_>>();
+        let starts = |bytes: &[u8]| decode(bytes, 0).iter().map(|reply| reply.start.0).collect::<Vec<_>>();
         for (bytes, expected) in [
             (two.clone(), [5, 20].as_slice()),
             (two[..two.len() - 1].to_vec(), &[5]),
             ([row(5, 9, &[1]), row(4, 9, &[1])].concat(), &[5]),
             (row(5, 4, &[1]), &[]),
-            // Those of another controller stand between.
+            // Replies of another controller are skipped.
             ([row(5, 9, &[1]), others, row(20, 30, &[3])].concat(), &[5, 20]),
             ([5_u64, 9, u64::MAX].iter().flat_map(|word| word.to_le_bytes()).collect(), &[]),
             (Vec::new(), &[]),
         ] {
             assert_eq!(starts(&bytes), expected, "{bytes:?}");
         }
-        assert!(of(&two, 0).iter().all(|reply| reply.reply.is_none()));
-    }
-
-    #[test]
-    fn recorded_replies_replace_simulated_ones() {
-        use crate::recording::{replies, report::Report};
-        use crate::trace::stored_run::Recording;
-        use stepscope_sim::Experiment;
-
-        // A framed link, as a logic analyzer would have seen it.
-        let mut recording = Recording::default();
-        Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#)
-            .expect("the default motion, framed")
-            .run(&mut recording);
-        let report = Report::of(&recording.trace, 16_000_000, 1, None);
-        let dealt = replies::to_bytes(&report, 16_000_000, 0..u64::MAX, &[0]);
-        let found = replies::of(&dealt.bytes, 0);
-        assert!(!found.is_empty() && found.iter().all(|reply| reply.reply.is_some()));
+        assert!(decode(&two, 0).iter().all(|reply| reply.reply.is_none()));
     }
 }

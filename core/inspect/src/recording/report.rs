@@ -3,27 +3,22 @@
 use super::serial::{
     DecodedByte, LineOptions, MEASURED_EDGES, decode_records, edges, is_text_of_seven, parity_of_seven,
 };
-use super::{
-    figures::StepFigures,
-    remedy::Remedy,
-    serial::{DecodedLine, Guess, Measured, guess, line_name},
-};
-use alloc::string::ToString;
-use alloc::{format, string::String, vec::Vec};
+use super::serial::{DecodedLine, Guess, Measured, guess, line_name};
+use super::{figures::StepFigures, remedy::Remedy};
+use alloc::{format, string::String, string::ToString, vec::Vec};
 use serde::Serialize;
 use stepscope_capture::uart::{Edge, Format, NoRate, estimate};
-use stepscope_peripheral::{
-    signal::{Levels, Record},
-    trace::Step,
-};
+use stepscope_peripheral::signal::{Levels, Record};
+use stepscope_peripheral::trace::Step;
 
 /// Figures of each channel, and the contents of the lines.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     pub channels: Vec<ChannelReport>,
     pub lines: Vec<LineReport>,
 }
 
+/// The figures of one channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChannelReport {
     pub channel: u8,
@@ -31,19 +26,22 @@ pub struct ChannelReport {
 }
 
 /// A decoded line.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LineReport {
     pub name: &'static str,
     pub measured: Option<Measured>,
     pub baud: u32,
     pub format: String,
+    /// Why it was not decoded.
     pub problem: Option<String>,
+    /// Why the result may be wrong.
     pub hint: Option<String>,
     pub remedies: Vec<Remedy>,
     pub decoded: DecodedLine,
     pub guess: Guess,
 }
 
+/// Number of records, and the signals that change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Survey {
     pub count: usize,
@@ -51,6 +49,7 @@ pub struct Survey {
 }
 
 impl Survey {
+    /// Counts records.
     pub fn of(records: impl IntoIterator<Item = Record>) -> Self {
         let mut records = records.into_iter();
         let Some(first) = records.next() else { return Self::default() };
@@ -90,6 +89,7 @@ impl Report {
         }
     }
 
+    /// The report of channel 0 with these steps, and no lines.
     pub fn of_steps(steps: &[Step], clock_hz: u32) -> Self {
         let figures = StepFigures::of(steps.iter().copied(), clock_hz);
         Self {
@@ -98,6 +98,7 @@ impl Report {
         }
     }
 
+    /// The report of RX.
     pub fn rx(&self) -> Option<&LineReport> {
         self.lines.iter().find(|line| line.name == line_name(Levels::RX))
     }
@@ -119,6 +120,7 @@ pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl 
     })
 }
 
+/// The default format.
 const EIGHT_N_ONE: &str = "8N1";
 
 /// Why no rate was found, and what helps.
@@ -128,17 +130,18 @@ fn no_rate(why: &NoRate, line: &'static str) -> (String, Vec<Remedy>) {
         return (format!("its pulses fit several bit rates ({})", rates.join(", ")), [Remedy::Baud].into());
     }
     if *why == NoRate::TooCoarse {
-        let text = "its bits last fewer than 3 cycles of the recording, so its bit rate cannot be measured; record at 4 samples per \
-                    bit or more, or export times with more decimal places";
+        let text = "its bits last fewer than 3 cycles of the recording, so its bit rate cannot be measured; use at least 4 samples per \
+                    bit, or export times with more decimal places";
         return (text.into(), [Remedy::Baud].into());
     }
-    let other = other(why, line);
-    let found = other.as_ref().map_or_else(String::new, |(text, _)| format!(": {text}"));
-    let remedies = other.into_iter().map(|(_, remedy)| remedy).chain([Remedy::BaudOrFormat]);
+    let reason = likely_reason(why, line);
+    let found = reason.as_ref().map_or_else(String::new, |(text, _)| format!(": {text}"));
+    let remedies = reason.into_iter().map(|(_, remedy)| remedy).chain([Remedy::BaudOrFormat]);
     (format!("no bit rate fits its pulses{found}"), remedies.collect())
 }
 
-fn other(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
+/// A likely reason for `why`, and its remedy.
+fn likely_reason(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
     match why {
         NoRate::Format(format) => {
             let text = format.to_string();
@@ -180,17 +183,8 @@ impl LineReport {
         let first: Vec<Edge> = edges(records.clone(), mask).take(MEASURED_EDGES).collect();
         let found = estimate(&first, format, Some(hz));
         let measured = found.as_ref().ok().map(|found| Measured::of(*found, clock_hz));
-        let mut line = Self {
-            name: line_name(mask),
-            measured,
-            baud: 0,
-            format: format.to_string(),
-            problem: None,
-            hint: None,
-            remedies: Vec::new(),
-            decoded: DecodedLine::default(),
-            guess: Guess::Other,
-        };
+        let mut line =
+            Self { name: line_name(mask), measured, format: format.to_string(), ..Self::default() };
         let bit = match (baud, &found) {
             (Some(baud), _) => hz / f64::from(baud.max(1)),
             (None, Ok(found)) => found.bit,
@@ -208,7 +202,7 @@ impl LineReport {
         let wrong = framing_errors.len() + parity_errors.len();
         let hint = match found {
             Err(why) if wrong * 8 > bytes.len() || why == NoRate::Inverted => {
-                other(&why, line.name).map(|(text, remedy)| (text, Some(remedy)))
+                likely_reason(&why, line.name).map(|(text, remedy)| (text, Some(remedy)))
             }
             Ok(found) if wrong * 8 > bytes.len() && found.usual != baud => {
                 Some((format!("its pulses look like {} baud", libm::round(hz / found.measured)), None))
@@ -225,19 +219,10 @@ impl LineReport {
     /// Decoded bytes on a line: [`Levels::RX`] or [`Levels::TX`].
     pub fn of_decoded(line: u64, decoded: DecodedLine, clock_hz: u32, baud: u32) -> Self {
         let guess = guess(&decoded.bytes, u64::from(clock_hz / baud.max(1)));
-        Self {
-            name: line_name(line),
-            measured: None,
-            baud,
-            format: EIGHT_N_ONE.into(),
-            problem: None,
-            hint: None,
-            remedies: Vec::new(),
-            decoded,
-            guess,
-        }
+        Self { name: line_name(line), baud, format: EIGHT_N_ONE.into(), decoded, guess, ..Self::default() }
     }
 
+    /// One line of text.
     pub fn to_text(&self) -> String {
         let measured = self
             .measured
@@ -263,6 +248,7 @@ impl LineReport {
         )
     }
 
+    /// The detected protocol as text.
     pub fn guess_text(&self) -> String {
         match self.guess {
             Guess::Framed { address, channels, good, bad } => {

@@ -1,25 +1,20 @@
 //! The scenario that reproduces a recording: steps as segment lists, or bytes as a line script.
 //!
-//! Steps are exact to the requested error. Pulse width and DIR set-up belong to the bus and are taken over where all
-//! pulses agree. Bytes begin within half a bit of the recording; those back to back are one send.
+//! Steps are exact to the requested error. Pulse width and DIR set-up belong to the bus: the shortest recorded ones are
+//! used. Bytes begin within half a bit of the recording; those back to back are one send.
 
 use super::serial::{DecodedLine, Guess};
 use crate::trace::timing::{Rule, TimingCheck};
 use alloc::{format, string::String, vec::Vec};
 use core::fmt;
-use stepscope_motion::{
-    Cause, ScheduledStep,
-    step_tables::{EntryFormat, Form, MAX_TOLERANCE, Tolerance, stored_steps},
-};
-use stepscope_peripheral::{
-    config::{Bus, Protocol, SerialLine, limits::PULSE_WIDTH_CYCLES},
-    segment::{PulseTimes, Segment, SegmentList},
-    signal::Record,
-    signal::Sink,
-    trace::{Step, steps},
-    units::{Cycles, Instant},
-    wire::bit_times::{BYTE_BITS, BitTimes},
-};
+use stepscope_motion::step_tables::{EntryFormat, Form, MAX_TOLERANCE, Tolerance, stored_steps};
+use stepscope_motion::{Cause, ScheduledStep};
+use stepscope_peripheral::config::{Bus, Protocol, SerialLine, limits::PULSE_WIDTH_CYCLES};
+use stepscope_peripheral::segment::{PulseTimes, Segment, SegmentList};
+use stepscope_peripheral::trace::{Step, steps};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::bit_times::{BYTE_BITS, BitTimes};
+use stepscope_peripheral::{signal::Record, signal::Sink};
 use stepscope_scenario::{
     ChannelSegments, Direction, Hex, LineScript, Problem, Scenario, ScriptedSend, SegmentLists, Source,
     TimingRules,
@@ -30,17 +25,19 @@ use stepscope_sim::replayed;
 const START: u64 = 1;
 /// Cycles before the first step in addition to its pulse.
 const MARGIN: u64 = 1;
-/// A pulse above 1/2 of the interval leaves no room for DIR.
+/// A pulse is at most this fraction (1/2) of the interval, so that DIR can change.
 const MAX_WIDTH_PART: u64 = 2;
 
+/// How to reproduce steps.
 #[derive(Clone, Copy, Debug)]
-pub struct Steps {
+pub struct StepRequest {
     pub clock_hz: u32,
     pub channels: u8,
     /// Maximum error of a step in cycles; more makes fewer segments.
     pub within_cycles: u64,
 }
 
+/// A scenario that reproduces a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reproduction {
     pub scenario: Scenario,
@@ -50,24 +47,25 @@ pub struct Reproduction {
     pub entries: usize,
 }
 
+/// Why no scenario reproduces a recording.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Refused {
+pub enum NotReproducible {
     NoSteps,
     NoBytes,
+    /// Steps of a channel that no segments can make.
     Channel(u8, Cause),
+    /// The clock in Hz is too slow for the bit rate.
     FewCycles(u32, u32),
     /// The first problem of the scenario.
     Invalid(Problem),
 }
 
-impl fmt::Display for Refused {
+impl fmt::Display for NotReproducible {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSteps => f.write_str("no channel steps; map a channel to STEP0"),
-            Self::NoBytes => {
-                f.write_str("no byte was decoded; map a channel to RX, or give another bit rate")
-            }
+            Self::NoBytes => f.write_str("no byte was decoded; map a channel to RX, or use another bit rate"),
             Self::Channel(channel, cause) => write!(f, "channel {channel}: {cause}"),
             Self::FewCycles(clock_hz, baud) => write!(
                 f,
@@ -75,36 +73,47 @@ impl fmt::Display for Refused {
                 11 * u64::from(*baud)
             ),
             Self::Invalid(problem) => {
-                write!(f, "no scenario holds the recording ({problem}); shorten it or use another clock")
+                write!(
+                    f,
+                    "no scenario can reproduce the recording ({problem}); use a shorter recording or another clock"
+                )
             }
         }
     }
 }
 
-impl core::error::Error for Refused {}
+impl core::error::Error for NotReproducible {}
 
 /// The steps of all channels as segment lists.
-pub fn of_steps(records: &[Record], request: &Steps) -> Result<Reproduction, Refused> {
+pub fn of_steps(records: &[Record], request: &StepRequest) -> Result<Reproduction, NotReproducible> {
     let all: Vec<Vec<Step>> = (0..request.channels).map(|channel| steps(records, channel)).collect();
     of_list(&all, request, Some(records))
 }
 
 /// Steps by channel, without pulses: the width is half of the shortest interval, at most the default.
-pub fn of_step_times(all: &[Vec<Step>], request: &Steps) -> Result<Reproduction, Refused> {
+pub fn of_step_times(all: &[Vec<Step>], request: &StepRequest) -> Result<Reproduction, NotReproducible> {
     of_list(all, request, None)
 }
 
-fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Result<Reproduction, Refused> {
-    let first =
-        all.iter().filter_map(|steps| steps.first()).map(|step| step.cycle).min().ok_or(Refused::NoSteps)?;
+fn of_list(
+    all: &[Vec<Step>],
+    request: &StepRequest,
+    records: Option<&[Record]>,
+) -> Result<Reproduction, NotReproducible> {
+    let first = all
+        .iter()
+        .filter_map(|steps| steps.first())
+        .map(|step| step.cycle)
+        .min()
+        .ok_or(NotReproducible::NoSteps)?;
     let pulse = pulse_times(records, all, request.clock_hz);
-    let least = pulse.width.0 + (pulse.hold.0 + pulse.setup.0).max(1) + MARGIN;
-    let later_cycles = (START + least).saturating_sub(first);
+    let min_start = pulse.width.0 + (pulse.hold.0 + pulse.setup.0).max(1) + MARGIN;
+    let later_cycles = (START + min_start).saturating_sub(first);
     let form = match request.within_cycles {
         0 => Form::Exact,
         within => Form::Quick(Tolerance::of(Cycles(within.min(MAX_TOLERANCE.0)))),
     };
-    let (mut channels, mut greatest, mut entries) = (Vec::new(), 0, 0);
+    let (mut channels, mut max_error, mut entries) = (Vec::new(), 0, 0);
     for (channel, steps) in (0..).zip(all) {
         let mut list = ChannelSegments { start_cycle: START, segments: Vec::new() };
         if !steps.is_empty() {
@@ -117,8 +126,8 @@ fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Re
                 })
                 .collect();
             let stored = stored_steps(&scheduled, form, EntryFormat::Q16, pulse)
-                .map_err(|cause| Refused::Channel(channel, cause))?;
-            greatest = greatest.max(stored.error.max_cycles);
+                .map_err(|cause| NotReproducible::Channel(channel, cause))?;
+            max_error = max_error.max(stored.error.max_cycles);
             list = channel_list(&stored.list);
         }
         entries += list.segments.len();
@@ -132,7 +141,7 @@ fn of_list(all: &[Vec<Step>], request: &Steps, records: Option<&[Record]>) -> Re
     scenario.bus.dir_hold_cycles = narrow(pulse.hold);
     scenario.source = Source::Segments(SegmentLists { channels });
     scenario.analysis.axis = 0;
-    Ok(Reproduction { scenario, later_cycles, greatest_error_cycles: greatest, entries })
+    Ok(Reproduction { scenario, later_cycles, greatest_error_cycles: max_error, entries })
 }
 
 fn channel_list(list: &SegmentList) -> ChannelSegments {
@@ -167,14 +176,15 @@ fn pulse_times(records: Option<&[Record]>, all: &[Vec<Step>], clock_hz: u32) -> 
         .unwrap_or_else(|| Bus::default().pulse_width_cycles.into())
         .min(interval / MAX_WIDTH_PART)
         .clamp(*PULSE_WIDTH_CYCLES.start(), *PULSE_WIDTH_CYCLES.end());
-    // DIR changes at the start of a segment, long before most of its steps, so more set-up only refuses some.
+    // DIR changes at the start of a segment, long before most of its steps. A longer set-up would only reject some.
     let setup =
         shortest(Rule::DirSetup).unwrap_or(0).min(width).min(interval.saturating_sub(width) / MAX_WIDTH_PART);
     PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(0) }
 }
 
+/// How to reproduce bytes.
 #[derive(Clone, Copy, Debug)]
-pub struct Bytes {
+pub struct ByteRequest {
     pub clock_hz: u32,
     pub baud: u32,
     pub guess: Guess,
@@ -185,15 +195,15 @@ pub struct Bytes {
 /// The bytes of a line as a line script for the controllers of `base`, or for one that the bytes imply.
 pub fn of_bytes(
     decoded: &DecodedLine,
-    request: &Bytes,
+    request: &ByteRequest,
     base: Option<&Scenario>,
-) -> Result<Reproduction, Refused> {
-    let Bytes { clock_hz, baud, .. } = *request;
-    let first = decoded.bytes.first().ok_or(Refused::NoBytes)?;
+) -> Result<Reproduction, NotReproducible> {
+    let ByteRequest { clock_hz, baud, .. } = *request;
+    let first = decoded.bytes.first().ok_or(NotReproducible::NoBytes)?;
     let mut scenario = base.map_or_else(|| implied_by(request), Scenario::clone);
     let own_hz = scenario.clock_hz;
     if u64::from(own_hz) < 11 * u64::from(baud) {
-        return Err(Refused::FewCycles(own_hz, baud));
+        return Err(NotReproducible::FewCycles(own_hz, baud));
     }
     let times = BitTimes::new(own_hz, baud);
     let half_bit = times.bit(1).0 / 2;
@@ -203,7 +213,7 @@ pub fn of_bytes(
     };
     let later_cycles = START.saturating_sub(cycle(first.start));
     let mut sends: Vec<ScriptedSend> = Vec::new();
-    let mut greatest = 0;
+    let mut max_error = 0;
     for byte in &decoded.bytes {
         let at = cycle(byte.start).saturating_add(later_cycles);
         let next =
@@ -211,7 +221,7 @@ pub fn of_bytes(
         // With a fast clock bytes overlap; these are sent back to back.
         match (sends.last_mut(), next) {
             (Some(send), Some(next)) if at <= next.saturating_add(half_bit) => {
-                greatest = greatest.max(at.abs_diff(next));
+                max_error = max_error.max(at.abs_diff(next));
                 send.bytes.0.push(byte.byte);
             }
             _ => {
@@ -222,10 +232,10 @@ pub fn of_bytes(
     scenario.line.baud = baud;
     let entries = sends.len();
     let scenario = replayed(scenario, LineScript { sends });
-    Ok(Reproduction { scenario, later_cycles, greatest_error_cycles: greatest, entries })
+    Ok(Reproduction { scenario, later_cycles, greatest_error_cycles: max_error, entries })
 }
 
-fn implied_by(request: &Bytes) -> Scenario {
+fn implied_by(request: &ByteRequest) -> Scenario {
     let mut scenario = Scenario::default();
     if u64::from(scenario.clock_hz) < 11 * u64::from(request.baud) {
         scenario.clock_hz = request.clock_hz;
@@ -242,6 +252,7 @@ fn implied_by(request: &Bytes) -> Scenario {
     scenario
 }
 
+/// The note of the scenario: what it reproduces, and how exactly.
 pub fn note(file: &str, reproduced: &Reproduction) -> String {
     let error = match reproduced.greatest_error_cycles {
         0 => "cycle-exact".into(),
@@ -257,6 +268,7 @@ pub fn note(file: &str, reproduced: &Reproduction) -> String {
     }
 }
 
+/// The end of the last byte.
 pub fn end_of(decoded: &DecodedLine, bit_cycles: u64) -> Option<Instant> {
     decoded.bytes.last().map(|byte| Instant(byte.start.0 + BYTE_BITS * bit_cycles))
 }
@@ -287,15 +299,15 @@ mod tests {
             for record in trace.iter_mut().skip(1) {
                 record.cycle = Instant(record.cycle.0.saturating_sub(by).max(1));
             }
-            let request = Steps { clock_hz: 16_000_000, channels: 2, within_cycles: 0 };
+            let request = StepRequest { clock_hz: 16_000_000, channels: 2, within_cycles: 0 };
             let reproduced = of_steps(&trace, &request).expect("steps");
             assert_eq!(reproduced.greatest_error_cycles, 0);
             let mut again = Recording::default();
             Experiment::new(&reproduced.scenario).expect("no problems").run(&mut again);
             for channel in 0..2 {
                 let shifted = |step: &Step| Step { cycle: step.cycle + reproduced.later_cycles, ..*step };
-                let wanted: Vec<Step> = steps(&trace, channel).iter().map(shifted).collect();
-                assert_eq!(steps(&again.trace, channel), wanted, "channel {channel}, {by} earlier");
+                let expected: Vec<Step> = steps(&trace, channel).iter().map(shifted).collect();
+                assert_eq!(steps(&again.trace, channel), expected, "channel {channel}, {by} earlier");
             }
             assert_eq!(reproduced.later_cycles > 0, early > 0);
         }
@@ -310,7 +322,8 @@ mod tests {
             let recording = recorded(json);
             let clock_hz = 16_000_000;
             let decoded = decode_line(&recording.trace, Levels::RX, clock_hz, 115_200);
-            let request = Bytes { clock_hz, baud: 115_200, guess: guess(&decoded.bytes, 139), channels: 1 };
+            let request =
+                ByteRequest { clock_hz, baud: 115_200, guess: guess(&decoded.bytes, 139), channels: 1 };
             let reproduced = of_bytes(&decoded, &request, None).expect("bytes");
             let mut again = Recording::default();
             Experiment::new(&reproduced.scenario).expect("no problems").run(&mut again);
@@ -319,30 +332,9 @@ mod tests {
         }
         let error = of_bytes(
             &DecodedLine::default(),
-            &Bytes { clock_hz: 1, baud: 1, guess: Guess::Other, channels: 1 },
+            &ByteRequest { clock_hz: 1, baud: 1, guess: Guess::Other, channels: 1 },
             None,
         );
-        assert_eq!(error, Err(Refused::NoBytes));
-    }
-
-    #[test]
-    fn recorded_steps_become_a_scenario() {
-        use crate::recording::scenario::{Steps, of_steps};
-        use crate::trace::stored_run::Recording;
-        use stepscope_peripheral::trace::steps;
-        use stepscope_sim::Experiment;
-
-        // What a run made, made again by segments: each step in its cycle.
-        let mut recording = Recording::default();
-        Experiment::from_json("{}").expect("the default motion").run(&mut recording);
-        let reproduced =
-            of_steps(&recording.trace, &Steps { clock_hz: 16_000_000, channels: 1, within_cycles: 0 })
-                .expect("steps");
-        let mut again = Recording::default();
-        Experiment::new(&reproduced.scenario).expect("no problems").run(&mut again);
-        let cycles = |recording: &Recording| {
-            steps(&recording.trace, 0).iter().map(|step| step.cycle).collect::<Vec<_>>()
-        };
-        assert_eq!(cycles(&again), cycles(&recording));
+        assert_eq!(error, Err(NotReproducible::NoBytes));
     }
 }

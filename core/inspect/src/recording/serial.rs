@@ -1,21 +1,17 @@
 //! Bytes on a recorded line: bit rate, framing, and protocol (DESIGN A5, A6).
 
-use alloc::collections::BTreeSet;
-use alloc::{vec, vec::Vec};
+use alloc::{collections::BTreeSet, vec, vec::Vec};
 use stepscope_capture::uart::{Edge, Estimate, Fault, Format, decode, estimate};
-use stepscope_peripheral::signal::Record;
-use stepscope_peripheral::{
-    protocol::Kind,
-    signal::{Levels, MAX_CHANNELS},
-    units::Instant,
-    wire::frame::{Deframed, Deframer, Ticks},
-};
+use stepscope_peripheral::signal::{Levels, MAX_CHANNELS};
+use stepscope_peripheral::wire::frame::{Deframed, Deframer, Ticks};
+use stepscope_peripheral::{protocol::Kind, signal::Record, units::Instant};
 
 /// Edges of a rate measurement.
 pub(super) const MEASURED_EDGES: usize = 4000;
 /// Gap in bit times that ends a raw packet.
 pub(super) const GAP_BITS: u64 = 45;
 
+/// A measured bit rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     pub baud: f64,
@@ -28,18 +24,20 @@ impl Measured {
         Self { baud: f64::from(clock_hz) / found.measured, usual: found.usual }
     }
 
+    /// The usual rate, or the measured one as a whole number.
     pub fn rounded(self) -> u32 {
         self.usual.unwrap_or_else(|| libm::round(self.baud) as u32)
     }
 }
 
+/// How to decode a line; without `baud` its rate is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineOptions {
     pub baud: Option<u32>,
     pub format: Format,
 }
 
-/// The rate of an 8N1 line (RX or TX); `None` where none or several fit.
+/// The bit rate of an 8N1 line (RX or TX); `None` if none or several fit.
 pub fn measured_baud(records: &[Record], mask: u64, clock_hz: u32) -> Option<Measured> {
     let edges: Vec<Edge> = edges(records.iter().copied(), mask).take(MEASURED_EDGES).collect();
     let found = estimate(&edges, Format::default(), Some(clock_hz.into())).ok()?;
@@ -55,7 +53,7 @@ pub(super) fn edges(records: impl Iterator<Item = Record>, mask: u64) -> impl It
     })
 }
 
-/// Different words required to detect a format; fewer share a parity by chance.
+/// Minimum words to detect a format; fewer may have the same parity by chance.
 const FORMAT_WORDS: usize = 8;
 const PARITY_WORDS: u32 = 6;
 
@@ -85,6 +83,7 @@ pub(super) fn is_text_of_seven(bytes: &[DecodedByte]) -> bool {
         && bytes.iter().filter(is_text).count() * 10 >= bytes.len() * 9
 }
 
+/// A byte with its start bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DecodedByte {
     pub start: Instant,
@@ -123,8 +122,10 @@ pub(super) fn decode_records(
     decoded
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The detected protocol of a line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guess {
+    /// Frames with a valid CRC and without.
     Framed {
         /// The most frequent address except 255.
         address: u8,
@@ -132,12 +133,9 @@ pub enum Guess {
         good: u32,
         bad: u32,
     },
-    /// Length in bytes, including the address.
-    Raw {
-        length: u8,
-        good: u32,
-        bad: u32,
-    },
+    /// Raw packets: the most frequent length, with address, and the packets with that and other lengths.
+    Raw { length: u8, good: u32, bad: u32 },
+    #[default]
     Other,
 }
 
@@ -209,6 +207,7 @@ fn raw(bytes: &[DecodedByte], bit_cycles: u64) -> Guess {
     Guess::Other
 }
 
+/// `RX` or `TX`.
 pub const fn line_name(mask: u64) -> &'static str {
     if mask == Levels::TX { "TX" } else { "RX" }
 }
@@ -218,7 +217,7 @@ mod tests {
     use super::*;
     use stepscope_peripheral::wire::BitTimes;
 
-    /// The levels of bytes sent at `baud`, each so many cycles after the last one's end, on RX.
+    /// The levels of RX for bytes sent at `baud`, each with the idle cycles before it.
     fn line(clock_hz: u32, baud: u32, bytes: &[(u8, u64)]) -> Vec<Record> {
         let times = BitTimes::new(clock_hz, baud);
         let record = |cycle, high| Record {
@@ -301,27 +300,5 @@ mod tests {
             decode_line(&line(16_000_000, 115_200, &packets(300, 1)), Levels::RX, 16_000_000, 115_200);
         assert_eq!(guess(&decoded.bytes, bit), Guess::Raw { length: 17, good: 1, bad: 0 });
         assert_eq!(guess(&[], bit), Guess::Other);
-    }
-
-    #[test]
-    fn the_line_of_a_framed_run_is_decoded() {
-        use crate::recording::serial::{Guess, decode_line, guess, measured_baud};
-        use crate::trace::stored_run::Recording;
-        use stepscope_peripheral::signal::Levels;
-        use stepscope_sim::Experiment;
-
-        // The line of a run, as a logic analyzer would have seen it.
-        let experiment =
-            Experiment::from_json(r#"{"line":{"protocol":"framed"}}"#).expect("the default motion, framed");
-        let mut recording = Recording::default();
-        experiment.run(&mut recording);
-        let baud = measured_baud(&recording.trace, Levels::RX, 16_000_000).expect("a line");
-        assert_eq!(baud.usual, Some(115_200));
-        let decoded = decode_line(&recording.trace, Levels::RX, 16_000_000, 115_200);
-        assert!(decoded.framing_errors.is_empty());
-        assert!(matches!(
-            guess(&decoded.bytes, 139),
-            Guess::Framed { address: 0, channels: Some(1), bad: 0, .. }
-        ));
     }
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use stepscope_capture::timebase::Timebase;
 use stepscope_peripheral::trace::Step;
 
+/// Steps or bytes of a recording or a plan.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<'a> {
     pub steps: &'a [Step],
@@ -20,7 +21,7 @@ impl Side<'_> {
 
     pub(super) fn seconds(&self, step: &Step) -> f64 {
         let first = self.steps.first().map_or(0, |first| first.cycle);
-        // Times that go back stay times.
+        // Steps may be out of order.
         step.cycle.wrapping_sub(first).cast_signed() as f64 / f64::from(self.clock_hz.max(1))
     }
 
@@ -41,6 +42,7 @@ pub struct ExactTimes {
     pub base: Timebase,
 }
 
+/// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -49,6 +51,7 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// `steps` or `bytes`.
     pub const fn plural(self) -> &'static str {
         match self {
             Self::Steps => "steps",
@@ -56,6 +59,7 @@ impl Kind {
         }
     }
 
+    /// `step` or `byte`.
     pub const fn singular(self) -> &'static str {
         match self {
             Self::Steps => "step",

@@ -1,9 +1,9 @@
-//! A pyramid over the changes of a long trace, so that a view costs no more than its pixels.
+//! A pyramid over the levels of a long trace: the time to draw a view depends on its pixels, not on its records.
 //!
 //! ```text
-//! level 1   [ which were high, which were low in 1024 records ] [ … ]
-//! level 0   [ … in 64 records ] [ … ] [ … ]                          16 bytes each
-//! trace     r r r r r r r r r r r r r r r r r r r r r r r r r r      16 bytes each
+//! level 1   [ signals high, signals low in 1024 records ] [ … ]      16 bytes per block
+//! level 0   [ … in 64 records ] [ … ] [ … ]                          16 bytes per block
+//! trace     r r r r r r r r r r r r r r r r r r r r r r r r r r      16 bytes per record
 //! ```
 //!
 //! Masks are exact, so a search skips every block in which its signal is constant. All levels take about a quarter of
@@ -12,8 +12,10 @@
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::signal::Record;
 
+/// Records per block of level 0.
 const BLOCK: usize = 64;
-const FAN: usize = 16;
+/// Blocks per block of the next level.
+const FAN_OUT: usize = 16;
 
 /// Pixel columns of a logic view, one bit per signal. Nothing is sampled: a glitch of one cycle shows in any column.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -22,6 +24,7 @@ pub struct Columns {
     pub high: Vec<u64>,
     /// Low in some cycle of the column.
     pub low: Vec<u64>,
+    /// Levels at the end of the column.
     pub last: Vec<u64>,
 }
 
@@ -46,6 +49,7 @@ impl Block {
     }
 }
 
+/// The edges that a search finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edge {
     Any,
@@ -53,7 +57,7 @@ pub enum Edge {
     Fall,
 }
 
-/// The pyramid over one trace; each call takes that trace.
+/// The pyramid over one trace. Every method takes the same trace, which may have grown since.
 #[derive(Clone, Debug, Default)]
 pub struct Changes {
     levels: Vec<Vec<Block>>,
@@ -69,12 +73,12 @@ impl Changes {
             block.iter().fold(Block::default(), |all, record| all.and(Block::of(record.levels.0)))
         }));
         for level in 1.. {
-            let known = self.level(level).len() * FAN;
+            let known = self.level(level).len() * FAN_OUT;
             let (lower, upper) = self.levels.split_at_mut(level);
             let (Some(lower), Some(upper)) = (lower.last(), upper.first_mut()) else { return };
-            let blocks = lower.get(known..).unwrap_or_default().chunks_exact(FAN);
+            let blocks = lower.get(known..).unwrap_or_default().chunks_exact(FAN_OUT);
             upper.extend(blocks.map(|block| block.iter().fold(Block::default(), |all, one| all.and(*one))));
-            if upper.len() < FAN {
+            if upper.len() < FAN_OUT {
                 return;
             }
         }
@@ -87,12 +91,14 @@ impl Changes {
         &mut self.levels[index]
     }
 
+    /// Memory of the pyramid in bytes.
     pub fn bytes(&self) -> usize {
         self.levels.iter().map(|level| level.capacity() * size_of::<Block>()).sum()
     }
 
-    /// Column i of `count` starts at start + floor(i*span/count) and has at least one cycle. `margin` columns are added on
-    /// each side; columns before cycle 0 have no levels, those past the last record continue its levels.
+    /// The cycles `start..end` as `count` columns: column i starts at start + floor(i*span/count) and has at least one
+    /// cycle. `margin` columns are added on each side. Columns before cycle 0 have no levels; those after the last record
+    /// repeat its levels.
     pub fn columns(&self, trace: &[Record], start: u64, end: u64, count: usize, margin: usize) -> Columns {
         let span = i128::from(end.saturating_sub(start).max(1));
         let total = count + 2 * margin;
@@ -111,34 +117,35 @@ impl Changes {
                 continue;
             }
             // Columns narrower than a cycle share it.
-            let back = trace.get(until.saturating_sub(1)).map_or(0, |record| record.cycle.0);
-            let from = if back > first { until.saturating_sub(1) } else { until };
+            let last_cycle = trace.get(until.saturating_sub(1)).map_or(0, |record| record.cycle.0);
+            let from = if last_cycle > first { until.saturating_sub(1) } else { until };
             let begin = from + gallop(trace.get(from..).unwrap_or_default(), first);
             until = begin + gallop(trace.get(begin..).unwrap_or_default(), after - 1);
             let level =
                 |index: usize| index.checked_sub(1).and_then(|i| trace.get(i)).map_or(0, |r| r.levels.0);
-            let seen = Block::of(level(begin)).and(self.between(trace, begin, until));
-            result.high[i] = seen.high;
-            result.low[i] = seen.low;
+            let levels = Block::of(level(begin)).and(self.levels_between(trace, begin, until));
+            result.high[i] = levels.high;
+            result.low[i] = levels.low;
             result.last[i] = level(until);
         }
         result
     }
 
-    fn between(&self, trace: &[Record], first: usize, after: usize) -> Block {
+    /// Levels of the records `first..after`.
+    fn levels_between(&self, trace: &[Record], first: usize, after: usize) -> Block {
         let mut all = Block::default();
         let mut at = first;
         while at < after {
-            let (mut whole, mut size) = (None, BLOCK);
+            let (mut largest, mut size) = (None, BLOCK);
             for level in &self.levels {
                 if !at.is_multiple_of(size) || at + size > after {
                     break;
                 }
                 let Some(block) = level.get(at / size) else { break };
-                whole = Some((*block, size));
-                size *= FAN;
+                largest = Some((*block, size));
+                size *= FAN_OUT;
             }
-            let (block, size) = whole.unwrap_or_else(|| {
+            let (block, size) = largest.unwrap_or_else(|| {
                 let until = (at / BLOCK * BLOCK + BLOCK).min(after);
                 let records = trace.get(at..until).unwrap_or_default();
                 (records.iter().fold(Block::default(), |all, r| all.and(Block::of(r.levels.0))), until - at)
@@ -149,7 +156,7 @@ impl Changes {
         all
     }
 
-    /// Index of the next edge of signal `bit` after cycle `at`. Initial levels are no edge.
+    /// Index of the next edge of signal `bit` after cycle `at`. The levels of the first record are no edge.
     pub fn next_edge(&self, trace: &[Record], bit: u8, at: u64, edge: Edge) -> Option<usize> {
         let mask = 1_u64.checked_shl(bit.into())?;
         let first = trace.partition_point(|record| record.cycle.0 <= at).max(1);
@@ -175,57 +182,59 @@ impl Changes {
         }
     }
 
+    /// Index of the first record from `at` on in which a signal of `mask` has the level `high`.
     fn first_at(&self, trace: &[Record], at: usize, mask: u64, high: bool) -> Option<usize> {
         let mut at = at;
         loop {
-            let (mut over, mut size) = (0, BLOCK);
+            let (mut skipped, mut size) = (0, BLOCK);
             for level in &self.levels {
                 match level.get(at / size) {
-                    Some(block) if at.is_multiple_of(size) && !block.has(mask, high) => over = size,
+                    Some(block) if at.is_multiple_of(size) && !block.has(mask, high) => skipped = size,
                     _ => break,
                 }
-                size *= FAN;
+                size *= FAN_OUT;
             }
-            if over == 0 {
+            if skipped == 0 {
                 let until = at / BLOCK * BLOCK + BLOCK;
                 let rest = trace.get(at..until.min(trace.len())).filter(|rest| !rest.is_empty())?;
                 let found = rest.iter().position(|record| Block::of(record.levels.0).has(mask, high));
                 if let Some(found) = found {
                     return Some(at + found);
                 }
-                over = until - at;
+                skipped = until - at;
             }
-            at += over;
+            at += skipped;
         }
     }
 
+    /// Index of the last such record before `end`.
     fn last_at(&self, trace: &[Record], end: usize, mask: u64, high: bool) -> Option<usize> {
         let mut end = end;
         while end > 0 {
-            let (mut over, mut size) = (0, BLOCK);
+            let (mut skipped, mut size) = (0, BLOCK);
             for level in &self.levels {
                 match (end / size).checked_sub(1).and_then(|index| level.get(index)) {
-                    Some(block) if end.is_multiple_of(size) && !block.has(mask, high) => over = size,
+                    Some(block) if end.is_multiple_of(size) && !block.has(mask, high) => skipped = size,
                     _ => break,
                 }
-                size *= FAN;
+                size *= FAN_OUT;
             }
-            if over == 0 {
+            if skipped == 0 {
                 let from = (end - 1) / BLOCK * BLOCK;
                 let records = trace.get(from..end).unwrap_or_default();
                 let found = records.iter().rposition(|record| Block::of(record.levels.0).has(mask, high));
                 if let Some(found) = found {
                     return Some(from + found);
                 }
-                over = end - from;
+                skipped = end - from;
             }
-            end -= over;
+            end -= skipped;
         }
         None
     }
 }
 
-/// The number of records up to `cycle`, by exponential search: the next one is usually near.
+/// Number of records up to `cycle`, by exponential search, because the result is usually small.
 fn gallop(trace: &[Record], cycle: u64) -> usize {
     let mut reach = 1;
     while trace.get(reach - 1).is_some_and(|record| record.cycle.0 <= cycle) {

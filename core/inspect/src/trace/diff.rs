@@ -1,37 +1,47 @@
 //! Compares a saved trace with a run: a table of edges ([`write_edges_row`](crate::export::tables::write_edges_row))
 //! or a trace's text ([`write_record`](stepscope_peripheral::trace::write_record)), in pieces of any size.
 //!
-//! The file may be a part of a run: its first row holds all levels, and the run may continue after its last.
+//! The file may be a part of a run: its first row has all levels, and the run may continue after its last.
+//!
+//! ```
+//! use stepscope_inspect::trace::{diff::TraceDiff, stored_run::record_run};
+//! use stepscope_peripheral::trace::write_record;
+//! use stepscope_sim::Experiment;
+//!
+//! let (_, runs) = record_run(&Experiment::from_json("{}").expect("it is valid"), 1).expect("it is short");
+//! let (mut file, mut diff) = (String::new(), TraceDiff::new(1));
+//! runs[0].trace.iter().for_each(|&record| write_record(&mut file, record).expect("a string takes it"));
+//! diff.feed(&runs[0].trace, file.as_bytes()).expect("it is a trace");
+//! assert_eq!(diff.finish(&runs[0].trace).expect("it has edges").difference, None);
+//! ```
 
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
 use core::fmt;
+use stepscope_peripheral::signal::{self, Levels, Record};
 use stepscope_peripheral::trace::{parse_line, shown_signals};
-use stepscope_peripheral::{
-    signal::{self, Levels, Record},
-    units::Instant,
-};
+use stepscope_peripheral::units::Instant;
 
 /// Maximum line length in bytes: a row of 36 signals has less than 200.
 const MAX_LINE: usize = 1000;
 
+/// A line of the file that is invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadLine {
+    /// From 1; 0 for an empty file.
     pub line: u64,
-    pub what: String,
+    pub problem: String,
 }
 
 impl fmt::Display for BadLine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: {}", self.line, self.what)
+        write!(f, "line {}: {}", self.line, self.problem)
     }
 }
 
 impl core::error::Error for BadLine {}
 
+/// The first difference of file and run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
     pub line: u64,
@@ -48,6 +58,7 @@ impl Difference {
     }
 }
 
+/// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
     /// Records that agree.
@@ -55,23 +66,23 @@ pub struct Outcome {
     /// First and last cycle that agree.
     pub range: (Instant, Instant),
     pub difference: Option<Difference>,
-    /// Whether the run continues after the file.
-    pub goes_on: bool,
+    /// Whether the run continues after the end of the file.
+    pub run_continues: bool,
 }
 
 #[derive(Clone, Debug)]
-enum Form {
+enum FileFormat {
     /// Before the first line.
     Unknown,
     Trace,
     Table(Vec<u32>),
 }
 
-/// Compares piece by piece; each call takes the same run's trace.
+/// Compares a file piece by piece. Every method takes the trace of the same run.
 #[derive(Clone, Debug)]
 pub struct TraceDiff {
     channels: u8,
-    form: Form,
+    format: FileFormat,
     partial: Vec<u8>,
     line: u64,
     next: Option<usize>,
@@ -82,10 +93,11 @@ pub struct TraceDiff {
 }
 
 impl TraceDiff {
+    /// For a run of a controller with `channels` channels.
     pub const fn new(channels: u8) -> Self {
         Self {
             channels,
-            form: Form::Unknown,
+            format: FileFormat::Unknown,
             partial: Vec::new(),
             line: 0,
             next: None,
@@ -96,7 +108,7 @@ impl TraceDiff {
         }
     }
 
-    /// Returns true if a difference is found and the rest is not needed.
+    /// Compares the next piece of the file. Returns true if a difference is found, so that the rest is not needed.
     pub fn feed(&mut self, run: &[Record], piece: &[u8]) -> Result<bool, BadLine> {
         for part in piece.split_inclusive(|byte| *byte == b'\n') {
             if self.difference.is_some() {
@@ -122,41 +134,43 @@ impl TraceDiff {
             same: self.same,
             range: (self.first, self.last.cycle),
             difference: self.difference,
-            goes_on: self.next.is_some_and(|next| next < run.len()),
+            run_continues: self.next.is_some_and(|next| next < run.len()),
         })
     }
 
-    fn bad(&self, what: String) -> BadLine {
-        BadLine { line: self.line, what }
+    fn bad(&self, problem: String) -> BadLine {
+        BadLine { line: self.line, problem }
     }
 
     fn end_of_line(&mut self, run: &[Record]) -> Result<(), BadLine> {
         self.line += 1;
         let bytes = core::mem::take(&mut self.partial);
         if bytes.len() > MAX_LINE {
-            return Err(self.bad(format!("longer than {MAX_LINE} characters; this is not a file of edges")));
+            return Err(
+                self.bad(format!("longer than {MAX_LINE} characters; use a table of edges or a trace"))
+            );
         }
         let text = core::str::from_utf8(&bytes).map_err(|_| self.bad("not UTF-8 text".into()))?;
         let text = text.trim_start_matches('\u{feff}').trim();
-        if matches!(self.form, Form::Unknown) {
+        if matches!(self.format, FileFormat::Unknown) {
             if text.starts_with("cycle,") {
-                self.form = Form::Table(self.columns(text)?);
+                self.format = FileFormat::Table(self.columns(text)?);
                 return Ok(());
             }
-            self.form = Form::Trace;
+            self.format = FileFormat::Trace;
         }
         if text.is_empty() {
             return Ok(());
         }
-        let record = match &self.form {
-            Form::Table(bits) => row(text, bits).map_err(|what| self.bad(what))?,
+        let record = match &self.format {
+            FileFormat::Table(bits) => parse_row(text, bits).map_err(|problem| self.bad(problem))?,
             _ => parse_line(text).map_err(|error| self.bad(error.to_string()))?,
         };
         if self.next.is_some() && record.cycle <= self.last.cycle {
             let (given, before) = (record.cycle.0, self.last.cycle.0);
-            return Err(self.bad(format!("cycle {given} comes after cycle {before}; cycles must rise")));
+            return Err(self.bad(format!("cycle {given} follows cycle {before}; cycles must increase")));
         }
-        self.take(run, record);
+        self.compare(run, record);
         Ok(())
     }
 
@@ -173,14 +187,14 @@ impl TraceDiff {
         )))
     }
 
-    fn take(&mut self, run: &[Record], record: Record) {
+    fn compare(&mut self, run: &[Record], record: Record) {
         let next = match self.next {
             Some(next) => next,
             None => {
                 self.first = record.cycle;
                 let after = run.partition_point(|own| own.cycle <= record.cycle);
                 let Some(own) = after.checked_sub(1).and_then(|at| run.get(at)) else {
-                    // Nothing precedes a run's first record.
+                    // The file begins before the run.
                     self.differ(record.cycle, record.levels, Levels(0));
                     return;
                 };
@@ -211,10 +225,10 @@ impl TraceDiff {
     }
 }
 
-fn row(text: &str, bits: &[u32]) -> Result<Record, String> {
+fn parse_row(text: &str, bits: &[u32]) -> Result<Record, String> {
     let mut fields = text.split(',');
     let cycle = fields.next().unwrap_or_default();
-    let cycle = cycle.parse().map_err(|_| format!("“{cycle}” is not a cycle; give a whole number from 0"))?;
+    let cycle = cycle.parse().map_err(|_| format!("“{cycle}” is not a cycle; use a whole number from 0"))?;
     // The time follows from the cycle.
     let _ = fields.next();
     let mut levels = 0;
@@ -224,7 +238,7 @@ fn row(text: &str, bits: &[u32]) -> Result<Record, String> {
             Some("1") => levels |= 1 << bit,
             given => {
                 let name = signal::name(bit).unwrap_or_default();
-                return Err(format!("{name} is “{}”; a level is 0 or 1", given.unwrap_or_default()));
+                return Err(format!("{name} is “{}”, not a level; use 0 or 1", given.unwrap_or_default()));
             }
         }
     }

@@ -1,16 +1,19 @@
 //! Drivers and the timing that their data sheets require.
 //!
-//! Figures are minima in ns, at the slowest clock that the sheet allows. [`DataSheet::source`] states what is not
-//! confirmed by a sheet.
+//! Values are minimum times in ns, at the slowest clock that the data sheet allows. [`DataSheet::source`] names values
+//! that no data sheet confirms.
 
 use crate::trace::timing::TimingCheck;
 use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
 
+/// The timing of one driver and its source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheet {
     pub model: DriverModel,
+    /// Its name in a scenario.
     pub id: &'static str,
     pub name: &'static str,
+    /// The document, and values to check.
     pub source: &'static str,
     pub rules: TimingRules,
 }
@@ -22,6 +25,7 @@ const fn times(
     TimingRules { step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, enable_wake_ns }
 }
 
+/// All drivers of the timing check.
 pub const DRIVERS: [&DataSheet; 6] = [&A4988, &A4979, &DRV8825, &TMC2209, &TMC262, &TB6600_CLASS];
 
 /// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A and t_B 1 us, t_C and t_D 200 ns. No time from
@@ -34,13 +38,12 @@ pub const A4988: DataSheet = DataSheet {
     rules: times([1000, 1000, 200, 200, 0]),
 };
 
-/// Allegro A4979: STEP high 1 us (Zephyr's binding, `step-width-ns`). Other times are the A4988's, **not confirmed**
-/// by the A4979's sheet.
+/// Allegro A4979: STEP high 1 us (Zephyr's binding). Other times are the A4988's, **not confirmed** by its data sheet.
 pub const A4979: DataSheet = DataSheet {
     model: DriverModel::A4979,
     id: "a4979",
     name: "Allegro A4979",
-    source: "only STEP high is confirmed (Zephyr's binding); the rest are the A4988's: check your sheet",
+    source: "only STEP high is confirmed (Zephyr's binding); the other times are the A4988's: check your sheet",
     rules: A4988.rules,
 };
 
@@ -61,44 +64,45 @@ pub const TMC2209: DataSheet = DataSheet {
     model: DriverModel::Tmc2209,
     id: "tmc2209",
     name: "Trinamic TMC2209",
-    source: "data sheet rev. 1.09: t_SH, t_SL = t_CLK + 20 ns at 11.5 MHz, its own oscillator's least; \
+    source: "data sheet rev. 1.09: t_SH, t_SL = t_CLK + 20 ns at 11.5 MHz, the minimum of its oscillator; \
              t_DSU, t_DSH; no time from ENN",
     rules: times([107, 107, 20, 20, 0]),
 };
 
-/// Trinamic TMC262 with the TMC2100's formula and a clock of 10 MHz, as on boards with the TMC2660: **not confirmed**
-/// by the TMC262's sheet.
+/// Trinamic TMC262: formula of the TMC2100 at 10 MHz, the TMC2660's minimum; **not confirmed** by its data sheet.
 pub const TMC262: DataSheet = DataSheet {
     model: DriverModel::Tmc262,
     id: "tmc262",
     name: "Trinamic TMC262",
-    source: "formula of the TMC2100's data sheet, t_CLK + 20 ns at 10 MHz, the TMC2660's least; not \
-             confirmed by the TMC262's own: check your sheet",
+    source: "formula of the TMC2100's data sheet, t_CLK + 20 ns at 10 MHz, the minimum of the TMC2660; not \
+             confirmed by the TMC262's data sheet: check your sheet",
     rules: times([120, 120, 20, 20, 0]),
 };
 
 /// Opto-isolated drivers such as TB6600 boxes, DM542, DM556, AM882, after the Leadshine AM882 manual: pulse high and
-/// low 2.5 us, DIR 5 us before the pulse, ENA 5 us before DIR. No hold time. Boxes differ: **check your driver's
+/// low 2.5 us, DIR 5 us before the pulse, ENA 5 us before DIR. No hold time. Models differ: **check your driver's
 /// sheet**.
 pub const TB6600_CLASS: DataSheet = DataSheet {
     model: DriverModel::Tb6600Class,
     id: "tb6600_class",
     name: "Opto-isolated, class of TB6600, DM542, AM882",
-    source: "class figures (Leadshine AM882 manual, t1 to t4), ENA 5 us ahead of DIR and DIR 5 us \
-             ahead of PUL; boxes differ: check your driver's sheet",
+    source: "class figures (Leadshine AM882 manual, t1 to t4), ENA 5 us before DIR and DIR 5 us \
+             before PUL; models differ: check your driver's sheet",
     rules: times([2500, 2500, 5000, 0, 10_000]),
 };
 
+/// The data sheet of a driver.
 pub fn sheet(model: DriverModel) -> &'static DataSheet {
     DRIVERS.into_iter().find(|sheet| sheet.model == model).unwrap_or(&A4988)
 }
 
-/// The check that a scenario requests; it lists `most` violations.
+/// The check that a scenario requests; it lists at most `max_listed` violations.
 pub fn check(scenario: &Scenario, max_listed: usize) -> Option<TimingCheck> {
     let rules = scenario.driver_timing.as_ref().map(rules)?;
     Some(TimingCheck::new(&rules, scenario.clock_hz, max_listed))
 }
 
+/// The minimum times of a scenario's driver.
 pub fn rules(driver: &DriverTiming) -> TimingRules {
     match driver {
         DriverTiming::Preset(model) => sheet(*model).rules.clone(),
@@ -112,7 +116,7 @@ mod tests {
     use stepscope_scenario::{Compact, Scenario};
 
     #[test]
-    fn every_driver_is_listed_under_its_own_word() {
+    fn every_driver_is_found_by_its_id() {
         for listed in DRIVERS {
             assert_eq!(sheet(listed.model), listed);
             assert_eq!(listed.model.compact(), listed.id);
@@ -123,14 +127,12 @@ mod tests {
                 driver_timing: Some(DriverTiming::Rules(listed.rules.clone())),
                 ..Scenario::default()
             };
-            assert!(own.check().is_ok(), "{} asks for more than a rule may", listed.id);
+            assert!(own.check().is_ok(), "{} exceeds the range of a rule", listed.id);
         }
     }
 
     #[test]
-    fn slow_drivers_need_more_than_a_microsecond() {
-        use crate::trace::drivers::DRIVERS;
-
+    fn only_slow_drivers_need_pulses_over_1_us() {
         let slow = DRIVERS.iter().filter(|sheet| sheet.rules.step_high_ns > 1000).map(|sheet| sheet.id);
         assert_eq!(slow.collect::<Vec<_>>(), ["drv8825", "tb6600_class"]);
     }

@@ -1,16 +1,17 @@
-//! Edges for the logic view: next, pulse, lists and counts. Each call reads only as many records as its result needs.
+//! Edges for the logic view: the next edge, the pulse at a cycle, lists and counts.
+//!
+//! Searches use the pyramid of [`changes`](crate::trace::changes), so they do not scan the trace.
 
 use crate::trace::changes::{Changes, Edge};
 use alloc::vec::Vec;
 use serde::Serialize;
-use stepscope_peripheral::{
-    signal::{Levels, Record},
-    trace::levels_at,
-    units::Instant,
-};
+use stepscope_peripheral::signal::{Levels, Record};
+use stepscope_peripheral::{trace::levels_at, units::Instant};
 
+/// Number of signals of a controller.
 const SIGNALS: u32 = 36;
 
+/// One edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct EdgeRow {
     pub cycle: u64,
@@ -18,6 +19,7 @@ pub struct EdgeRow {
     pub high: bool,
 }
 
+/// Edges in ascending order of cycles.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct EdgeList {
     pub rows: Vec<EdgeRow>,
@@ -25,14 +27,18 @@ pub struct EdgeList {
     pub more: bool,
 }
 
+/// The high or low pulse of a signal at a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Pulse {
     pub high: bool,
+    /// Cycle of the edge that began it; `None` for the initial level.
     pub begin: Option<u64>,
     pub end: Option<u64>,
+    /// Cycle of the edge after its end.
     pub next: Option<u64>,
 }
 
+/// A trace with its pyramid.
 #[derive(Clone, Copy)]
 pub struct Signals<'a> {
     pub trace: &'a [Record],
@@ -40,16 +46,18 @@ pub struct Signals<'a> {
 }
 
 impl Signals<'_> {
+    /// The level of signal `bit` at a cycle.
     pub fn level(&self, bit: u8, cycle: u64) -> bool {
         levels_at(self.trace, Instant(cycle)).has(1 << bit.min(63))
     }
 
-    /// Cycle of the first edge after `cycle`, or the last one before.
+    /// Cycle of the first edge after `cycle`, or of the last one before it (`forward` = false).
     pub fn next(&self, bit: u8, cycle: u64, forward: bool, edge: Edge) -> Option<u64> {
         let found = self.edge(bit, cycle, forward, edge);
         found.and_then(|index| self.trace.get(index)).map(|record| record.cycle.0)
     }
 
+    /// The pulse of signal `bit` at a cycle.
     pub fn pulse_at(&self, bit: u8, cycle: u64) -> Pulse {
         let end = self.next(bit, cycle, true, Edge::Any);
         Pulse {
@@ -60,8 +68,7 @@ impl Signals<'_> {
         }
     }
 
-    /// Edges after `cycle` (`None`: from reset), or before it, of one or all signals: at least `most` if they exist,
-    /// and all edges of the last cycle.
+    /// Edges of one or all signals after `cycle` (`None`: from reset) or before it: at least `max`, with whole cycles.
     pub fn list(&self, bit: Option<u8>, cycle: Option<u64>, forward: bool, max: usize) -> EdgeList {
         let at = cycle.unwrap_or(0);
         let mut index = match (forward, cycle) {
@@ -80,7 +87,7 @@ impl Signals<'_> {
             let shown = bits.filter(|&signal| bit.is_none_or(|bit| u32::from(bit) == signal));
             let cycle = self.trace.get(found).map_or(0, |record| record.cycle.0);
             let edge = |signal| EdgeRow { cycle, bit: signal, high: now >> signal & 1 == 1 };
-            // Backward lists are reversed at the end, so rows of one cycle are, too.
+            // A backward list is reversed at the end, so the rows of one cycle are added in reverse, too.
             if forward {
                 list.rows.extend(shown.map(edge));
             } else {
@@ -94,6 +101,7 @@ impl Signals<'_> {
         list
     }
 
+    /// Index of the next record, from `index` on or before it, in which one or any signal changes.
     fn changed_from(&self, bit: Option<u8>, index: usize, forward: bool) -> Option<usize> {
         match (bit, forward) {
             (Some(bit), true) => {
@@ -122,11 +130,13 @@ impl Signals<'_> {
     }
 }
 
+/// Number of edges of all signals.
 pub fn count(trace: &[Record]) -> u64 {
     let pairs = trace.iter().zip(trace.iter().skip(1));
     pairs.map(|(before, now)| u64::from((before.levels.0 ^ now.levels.0).count_ones())).sum()
 }
 
+/// Bits of the signals that change.
 pub fn changing(trace: &[Record]) -> Vec<u8> {
     let Levels(first) = trace.first().map_or(Levels::RESET, |record| record.levels);
     let mask = trace.iter().fold(0, |mask, record| mask | (record.levels.0 ^ first));
@@ -138,7 +148,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edges_are_listed_in_both_directions_with_all_of_their_cycle() {
+    fn lists_in_both_directions_include_all_edges_of_a_cycle() {
         let trace = [(0, 0b00), (5, 0b11), (9, 0b10), (12, 0b00)];
         let trace = trace.map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
         let mut changes = Changes::default();
@@ -165,7 +175,6 @@ mod tests {
         use stepscope_peripheral::trace::steps;
         use stepscope_sim::Experiment;
 
-        // Of the trace of a run: the first pulse of STEP0, bit 0, and how long it is.
         let experiment = Experiment::from_json("{}").expect("the default motion");
         let mut recording = Recording::default();
         experiment.run(&mut recording);

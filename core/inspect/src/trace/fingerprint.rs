@@ -1,7 +1,7 @@
-//! Compares two runs without their traces: the digest, and running digests at up to sixteen checkpoints (DESIGN A3).
+//! Compares two runs without their traces: by the digest, and by intermediate digests at up to sixteen checkpoints
+//! (DESIGN A3).
 //!
-//! Checkpoints are the smallest power of two of records apart that makes at most sixteen, so the number of records
-//! determines them:
+//! The spacing of checkpoints is the smallest power of two that makes at most sixteen of them:
 //!
 //! ```text
 //! records    1 … 16    17 … 33    34 … 67    …    n
@@ -9,24 +9,23 @@
 //! ```
 
 use alloc::vec::Vec;
-use stepscope_peripheral::trace::Digest;
-use stepscope_peripheral::{
-    signal::{Levels, Record, Sink},
-    units::Instant,
-};
+use stepscope_peripheral::signal::{Levels, Record, Sink};
+use stepscope_peripheral::{trace::Digest, units::Instant};
 
 pub(crate) const MAX_CHECKPOINTS: usize = 16;
 
+/// The digest and checkpoints of a trace.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fingerprint {
     /// The digest of the trace.
     pub digest: u64,
     pub records: u64,
-    /// High halves of the digests of the first [`Self::spacing`] records, twice as many, and so on.
+    /// High halves of the digests after 1, 2, 3, … times [`Self::spacing`] records.
     pub checkpoints: Vec<u32>,
 }
 
 impl Fingerprint {
+    /// The fingerprint of a complete trace.
     pub fn of(trace: &[Record]) -> Self {
         let mut fingerprinter = Fingerprinter::default();
         for record in trace {
@@ -35,6 +34,7 @@ impl Fingerprint {
         fingerprinter.finish()
     }
 
+    /// Records between checkpoints.
     pub const fn spacing(&self) -> u64 {
         spacing(self.records)
     }
@@ -45,6 +45,7 @@ pub(crate) const fn spacing(records: u64) -> u64 {
     (records / (MAX_CHECKPOINTS as u64 + 1) + 1).next_power_of_two()
 }
 
+/// Computes a fingerprint record by record.
 #[derive(Clone)]
 pub struct Fingerprinter {
     digest: Digest,
@@ -60,6 +61,7 @@ impl Default for Fingerprinter {
 }
 
 impl Fingerprinter {
+    /// The fingerprint of all records so far.
     pub fn finish(self) -> Fingerprint {
         Fingerprint {
             digest: self.digest.value(),
@@ -75,7 +77,7 @@ impl Sink for Fingerprinter {
         if self.digest.records() == self.next {
             self.checkpoints.push(high_half(&self.digest));
             if self.checkpoints.len() > MAX_CHECKPOINTS {
-                // Leaves every second one.
+                // Keeps every second one.
                 let mut index = 0;
                 self.checkpoints.retain(|_| {
                     index += 1;
@@ -92,14 +94,16 @@ fn high_half(digest: &Digest) -> u32 {
     (digest.value() >> 32) as u32
 }
 
-/// A position in a trace: records, changes of single signals, last cycle.
+/// A position in a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
     pub records: u64,
+    /// Edges of single signals up to here.
     pub edges: u64,
     pub cycle: Instant,
 }
 
+/// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerprintMatch {
     Same(Mark),
@@ -107,17 +111,21 @@ pub enum FingerprintMatch {
     Differs {
         after: Mark,
         until: Mark,
-        /// Which trace ends first, if all before is equal.
+        /// The trace that ends first, if it is equal up to its end.
         shorter: Option<Shorter>,
     },
 }
 
+/// The trace that ends first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shorter {
+    /// The checked trace.
     This,
+    /// The trace of the fingerprint.
     Other,
 }
 
+/// Compares a trace with a fingerprint, record by record.
 pub struct FingerprintCheck<'a> {
     other: &'a Fingerprint,
     spacing: u64,
@@ -129,6 +137,7 @@ pub struct FingerprintCheck<'a> {
 }
 
 impl<'a> FingerprintCheck<'a> {
+    /// A check against the fingerprint of another trace.
     pub fn with(other: &'a Fingerprint) -> Self {
         let none = Mark { records: 0, edges: 0, cycle: Instant::RESET };
         Self {
@@ -142,6 +151,7 @@ impl<'a> FingerprintCheck<'a> {
         }
     }
 
+    /// The result for all records so far.
     pub fn finish(self) -> FingerprintMatch {
         let Self { other, last, same, differs, .. } = self;
         if let Some(until) = differs {
@@ -188,7 +198,7 @@ impl Sink for FingerprintCheck<'_> {
 mod tests {
     use super::*;
 
-    /// A record every tenth cycle, in each one more edge.
+    /// One record every ten cycles; each toggles one signal.
     fn trace(records: u64) -> Vec<Record> {
         (0..records).map(|i| Record { cycle: Instant(10 * i), levels: Levels(i & 1) }).collect()
     }
@@ -207,7 +217,7 @@ mod tests {
             assert_eq!((digest, counted), (Digest::of(&trace), records));
             let spacing = spacing(records);
             assert!(spacing.is_power_of_two() && records / spacing <= 16, "{records}");
-            assert!(spacing == 1 || records / (spacing / 2) > 16, "{records}: the least");
+            assert!(spacing == 1 || records / (spacing / 2) > 16, "{records}: not the smallest spacing");
             let expected: Vec<u32> = (1..=records / spacing)
                 .map(|k| (Digest::of(&trace[..(k * spacing) as usize]) >> 32) as u32)
                 .collect();
@@ -220,7 +230,9 @@ mod tests {
         for records in [1, 2, 16, 17, 100, 545] {
             let sent = trace(records);
             let other = Fingerprint::of(&sent);
-            let FingerprintMatch::Same(mark) = compare(&sent, &other) else { panic!("{records}: the same") };
+            let FingerprintMatch::Same(mark) = compare(&sent, &other) else {
+                panic!("{records}: they are equal")
+            };
             assert_eq!((mark.records, mark.edges), (records, records - 1));
             for changed in 0..records as usize {
                 let mut own = sent.clone();
@@ -252,15 +264,13 @@ mod tests {
 
     #[test]
     fn equal_traces_have_equal_fingerprints() {
-        use crate::trace::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch};
         use crate::trace::stored_run::Recording;
-        use stepscope_peripheral::signal::Sink;
         use stepscope_sim::Experiment;
 
         let experiment = Experiment::from_json("{}").expect("the default motion");
         let mut recording = Recording::default();
         experiment.run(&mut recording);
-        let sent = Fingerprint::of(&recording.trace); // what a link carries
+        let sent = Fingerprint::of(&recording.trace);
         let mut check = FingerprintCheck::with(&sent);
         recording.trace.iter().for_each(|&record| check.record(record));
         assert!(matches!(check.finish(), FingerprintMatch::Same(_)));

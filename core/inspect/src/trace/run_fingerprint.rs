@@ -1,19 +1,16 @@
-//! The run fingerprint in a link, which shows whether a run is the one that the sender saw.
+//! The run fingerprint in a link: it shows whether a run equals that of the sender.
 //!
 //! ```text
 //! d=<form>.<version>.<controller>….<check>        form 1
 //! <controller> = <digest>.<records>.<checkpoints>
 //! ```
 //!
-//! The CRC-32 (ISO-HDLC) of all before the last dot keeps a damaged link from reporting a difference. Checkpoints are
-//! big-endian base64url; `_` replaces dots of the version.
+//! `check` is the CRC-32 (ISO-HDLC) of all text before the last dot, so that a damaged link is not reported as a
+//! difference. Checkpoints are big-endian base64url; `_` replaces dots of the version.
 
 use crate::trace::fingerprint::{Fingerprint, FingerprintCheck, FingerprintMatch, Mark, Shorter, spacing};
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
 use base64ct::{Base64UrlUnpadded, Encoding};
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -22,6 +19,7 @@ const FORM: u32 = 1;
 const MAX_CONTROLLERS: usize = 32;
 const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
+/// The fingerprints of all controllers of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunFingerprint {
     pub version: String,
@@ -32,9 +30,8 @@ pub struct RunFingerprint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunFingerprintError {
-    Newer {
-        given: u32,
-    },
+    /// Its form is that of a newer version.
+    Newer { given: u32 },
     /// Wrong CRC, or no fingerprint.
     Damaged,
 }
@@ -55,13 +52,16 @@ impl fmt::Display for RunFingerprintError {
 
 impl core::error::Error for RunFingerprintError {}
 
+/// The version of this crate.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 impl RunFingerprint {
+    /// A fingerprint with the version of this crate.
     pub fn of(controllers: Vec<Fingerprint>) -> Self {
         Self { version: VERSION.to_string(), controllers }
     }
 
+    /// The text for a link.
     pub fn emit(&self) -> String {
         let mut text = format!("{FORM}.{}", self.version.replace('.', "_"));
         for Fingerprint { digest, records, checkpoints } in &self.controllers {
@@ -72,12 +72,12 @@ impl RunFingerprint {
         text + &format!(".{check:08x}")
     }
 
+    /// The sender's version if it differs from this one.
     pub fn other_version(&self) -> Option<&str> {
         (self.version != VERSION).then_some(self.version.as_str())
     }
 
-    /// Checks for the traces of `controllers` controllers, for [`Verification::of`]. Fails with the sender's number
-    /// if that differs.
+    /// One check per controller, for [`Verification::of`]. Fails with the sender's number of controllers if it differs.
     pub fn checks(&self, controllers: usize) -> Result<Vec<FingerprintCheck<'_>>, usize> {
         if self.controllers.len() != controllers {
             return Err(self.controllers.len());
@@ -97,10 +97,11 @@ impl RunFingerprint {
         if check != format!("{:08x}", CHECK.checksum(checked.as_bytes())) {
             return Err(RunFingerprintError::Damaged);
         }
-        parsed(checked).ok_or(RunFingerprintError::Damaged)
+        parse_checked(checked).ok_or(RunFingerprintError::Damaged)
     }
 }
 
+/// Whether a run equals that of a fingerprint; otherwise the first controller that differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verification {
     Same { edges: u64 },
@@ -108,6 +109,7 @@ pub enum Verification {
 }
 
 impl Verification {
+    /// The result of the checks of all controllers, in their order.
     pub fn of<'a>(checks: impl IntoIterator<Item = FingerprintCheck<'a>>) -> Self {
         let mut edges = 0;
         for (controller, check) in checks.into_iter().enumerate() {
@@ -122,7 +124,7 @@ impl Verification {
     }
 }
 
-fn parsed(checked: &str) -> Option<RunFingerprint> {
+fn parse_checked(checked: &str) -> Option<RunFingerprint> {
     let mut parts = checked.split('.').skip(1);
     let version = parts.next()?.replace('_', ".");
     let mut controllers = Vec::new();
@@ -140,15 +142,15 @@ fn parsed(checked: &str) -> Option<RunFingerprint> {
         let digest = u64::from_str_radix(digest, 16).ok()?;
         controllers.push(Fingerprint { digest, records, checkpoints });
     }
-    let some = (1..=MAX_CONTROLLERS).contains(&controllers.len());
-    some.then_some(RunFingerprint { version, controllers })
+    let is_valid = (1..=MAX_CONTROLLERS).contains(&controllers.len());
+    is_valid.then_some(RunFingerprint { version, controllers })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn proof(controllers: u64) -> RunFingerprint {
+    fn example(controllers: u64) -> RunFingerprint {
         let one = |k: u64| Fingerprint {
             digest: 0x0123_4567_89ab_cdef * (k + 1),
             records: 10 + 7 * k,
@@ -158,19 +160,19 @@ mod tests {
     }
 
     #[test]
-    fn reading_gives_back_what_was_written() {
+    fn emitted_fingerprints_are_parsed_unchanged() {
         for controllers in [1, 2, 32] {
-            let proof = proof(controllers);
-            assert_eq!(RunFingerprint::parse(&proof.emit()), Ok(proof));
+            let fingerprint = example(controllers);
+            assert_eq!(RunFingerprint::parse(&fingerprint.emit()), Ok(fingerprint));
         }
-        assert!(proof(1).emit().starts_with("1.0_1_0-rc_2.0123456789abcdef.10."), "{}", proof(1).emit());
-        assert_eq!(RunFingerprint::parse(&proof(33).emit()), Err(RunFingerprintError::Damaged));
-        assert_eq!(RunFingerprint::parse(&proof(0).emit()), Err(RunFingerprintError::Damaged));
+        assert!(example(1).emit().starts_with("1.0_1_0-rc_2.0123456789abcdef.10."), "{}", example(1).emit());
+        assert_eq!(RunFingerprint::parse(&example(33).emit()), Err(RunFingerprintError::Damaged));
+        assert_eq!(RunFingerprint::parse(&example(0).emit()), Err(RunFingerprintError::Damaged));
     }
 
     #[test]
     fn every_truncation_and_changed_character_is_an_error() {
-        let text = proof(2).emit();
+        let text = example(2).emit();
         for length in 0..text.len() {
             assert_eq!(RunFingerprint::parse(&text[..length]), Err(RunFingerprintError::Damaged), "{length}");
         }
@@ -201,19 +203,5 @@ mod tests {
             let text = format!("{text}.{:08x}", CHECK.checksum(text.as_bytes()));
             assert_eq!(RunFingerprint::parse(&text), Err(RunFingerprintError::Damaged), "{text}");
         }
-    }
-
-    #[test]
-    fn a_fingerprint_is_read_back() {
-        use crate::trace::stored_run::Recording;
-        use crate::trace::{fingerprint::Fingerprint, run_fingerprint::RunFingerprint};
-        use stepscope_sim::Experiment;
-
-        let experiment = Experiment::from_json("{}").expect("the default motion");
-        let mut recording = Recording::default();
-        experiment.run(&mut recording);
-        let sent = RunFingerprint::of(vec![Fingerprint::of(&recording.trace)]);
-        assert_eq!(RunFingerprint::parse(&sent.emit()), Ok(sent)); // the part `d` of a link
-        assert!(RunFingerprint::parse("no fingerprint").is_err());
     }
 }

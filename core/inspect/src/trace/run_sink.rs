@@ -1,12 +1,10 @@
-//! A stored run for the page's views, with the timing check of its pulses.
+//! A stored run together with the timing check of its pulses.
 
-use crate::trace::stored_run::Recording;
-use crate::trace::timing::TimingCheck;
-use stepscope_peripheral::{
-    signal::{Event, Record, Sink},
-    units::Instant,
-};
+use crate::{trace::stored_run::Recording, trace::timing::TimingCheck};
+use stepscope_peripheral::signal::{Event, Record, Sink};
+use stepscope_peripheral::units::Instant;
 
+/// Stores a run and checks its timing in one pass.
 #[derive(Clone, Default)]
 pub struct RunSink {
     pub recording: Recording,
@@ -27,14 +25,14 @@ impl Sink for RunSink {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn a_run_is_stored_and_checked_at_once() {
+    fn one_pass_stores_and_checks_a_run() {
         use crate::trace::{drivers::A4988, run_sink::RunSink, timing::TimingCheck};
         use stepscope_sim::Experiment;
 
         let experiment = Experiment::from_json("{}").expect("the default motion");
         let timing = TimingCheck::new(&A4988.rules, experiment.config().clock_hz(), 10);
-        let mut watched = RunSink { timing: Some(timing), ..RunSink::default() };
-        experiment.run(&mut watched);
-        assert!(watched.recording.digest.records() > 6400);
+        let mut sink = RunSink { timing: Some(timing), ..RunSink::default() };
+        experiment.run(&mut sink);
+        assert!(sink.recording.digest.records() > 6400);
     }
 }

@@ -1,21 +1,18 @@
-//! A run as the views need it: records, digest and packets, in bounded memory.
+//! A run in memory, as the views need it: records, digest and packets.
 
 use crate::packets::log::PacketLog;
 use alloc::vec::Vec;
 use core::fmt;
-use stepscope_peripheral::{
-    signal::{Event, Record, Sink},
-    trace::Digest,
-    units::Instant,
-};
+use stepscope_peripheral::signal::{Event, Record, Sink};
+use stepscope_peripheral::{trace::Digest, units::Instant};
 use stepscope_sim::{Experiment, Run};
 
-/// Maximum records of all controllers together, at 16 bytes each. A step takes two.
+/// Maximum records of all controllers together, at 16 bytes each. A step has two.
 pub const MAX_RECORDS: u64 = 48_000_000;
-/// Interval of [`check_records`], in records.
+/// Records between two calls of [`check_records`].
 pub const RECORDS_PER_CHECK: u64 = 1 << 16;
 
-/// A run for the views.
+/// The stored run of one controller.
 #[derive(Clone, Default)]
 pub struct Recording {
     pub trace: Vec<Record>,
@@ -44,15 +41,19 @@ impl Recording {
 /// The run exceeds [`MAX_RECORDS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TooLong {
+    /// Number of planned steps.
     Steps(u64),
+    /// Counted while it ran.
     Edges,
 }
 
 impl fmt::Display for TooLong {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Steps(steps) => write!(f, "{steps} steps, and up to {} can be analyzed", MAX_RECORDS / 2)?,
-            Self::Edges => write!(f, "the run makes more than {MAX_RECORDS} edges, the maximum")?,
+            Self::Steps(steps) => {
+                write!(f, "{steps} steps are too many; the maximum is {}", MAX_RECORDS / 2)?
+            }
+            Self::Edges => write!(f, "the run has more than {MAX_RECORDS} edges, the maximum")?,
         }
         f.write_str("; use a shorter motion, or end the run earlier with run_cycles")
     }
@@ -70,7 +71,7 @@ fn record_within(
     controllers: usize,
     max_records: u64,
 ) -> Result<(Run, Vec<Recording>), TooLong> {
-    // Segments have known steps; other edges are counted as they come.
+    // The steps of segments are known in advance; other edges are counted during the run.
     let segments = experiment.segments();
     if let Some(steps) = segments.map(|segments| segments.steps()).filter(|steps| *steps > max_records / 2) {
         return Err(TooLong::Steps(steps));
@@ -85,6 +86,7 @@ fn record_within(
     Ok((run, recordings))
 }
 
+/// Fails if the recordings exceed [`MAX_RECORDS`].
 pub fn check_records(recordings: &[Recording]) -> Result<(), TooLong> {
     check_within(recordings, MAX_RECORDS)
 }
@@ -100,17 +102,17 @@ mod tests {
     use alloc::{format, string::ToString};
 
     #[test]
-    fn a_stored_run_equals_the_run() {
+    fn stored_records_equal_those_of_a_run() {
         let experiment = Experiment::from_json("{}").expect("it runs");
         let mut expected = Recording::default();
         let run = experiment.run(&mut expected);
-        let (kept, recordings) = record_run(&experiment, 1).expect("it is short");
+        let (stored, recordings) = record_run(&experiment, 1).expect("it is short");
         assert_eq!(recordings.first().map(|found| &found.trace), Some(&expected.trace));
-        assert_eq!(kept.cycles(), run.cycles());
+        assert_eq!(stored.cycles(), run.cycles());
     }
 
     #[test]
-    fn a_run_with_too_many_steps_is_refused_before_it_begins() {
+    fn too_many_steps_are_rejected_before_the_run() {
         let json = |count: u32| {
             let list = format!(r#"{{"segments":[{{"steps":{{"count":{count}}}}}]}}"#);
             format!(r#"{{"source":{{"segments":{{"channels":[{list}]}}}}}}"#)
@@ -120,7 +122,7 @@ mod tests {
         assert_eq!(refused, TooLong::Steps(u32::MAX.into()));
         assert_eq!(
             refused.to_string(),
-            "4294967295 steps, and up to 24000000 can be analyzed; use a shorter motion, or end the run earlier with run_cycles"
+            "4294967295 steps are too many; the maximum is 24000000; use a shorter motion, or end the run earlier with run_cycles"
         );
         let experiment = Experiment::from_json(&json(1000)).expect("it runs");
         assert!(record_within(&experiment, 1, 2000).is_ok());
@@ -128,20 +130,10 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_makes_too_many_edges_is_given_up() {
+    fn too_many_edges_end_the_run() {
         let json = r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":200000},"speed":{"steps_s":20000}}}]}]}}}"#;
         let experiment = Experiment::from_json(json).expect("it runs");
         assert!(record_run(&experiment, 1).is_ok());
         assert_eq!(record_within(&experiment, 1, 100_000).err(), Some(TooLong::Edges));
-    }
-
-    #[test]
-    fn a_stored_run_has_all_records() {
-        use crate::trace::stored_run::record_run;
-        use stepscope_sim::Experiment;
-
-        let experiment = Experiment::from_json("{}").expect("every field has a default");
-        let (_, recordings) = record_run(&experiment, 1).expect("it is short");
-        assert_eq!(recordings[0].trace.len() as u64, recordings[0].digest.records());
     }
 }

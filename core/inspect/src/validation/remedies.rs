@@ -1,15 +1,10 @@
-//! Changes that make a motion possible that is too fast for its bus; each is validated first.
+//! Remedies for a motion that is too fast for its bus. Each one is validated before it is offered.
 
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
 use serde::Serialize;
-use stepscope_motion::{
-    moves::{Axis, Move},
-    plan_axis, problem,
-};
+use stepscope_motion::moves::{Axis, Move};
+use stepscope_motion::{plan_axis, problem};
 use stepscope_scenario::{Cause, MotionEngine, Scenario, Source};
 use stepscope_sim::{ValidatedScenario, axes_of, bus_of};
 
@@ -23,6 +18,7 @@ pub struct Remedies {
     pub offers: Vec<Offer>,
 }
 
+/// A change, and the changed scenario as JSON.
 #[derive(Clone, Debug, Serialize)]
 pub struct Offer {
     pub change: String,
@@ -90,8 +86,8 @@ fn shorter_slots(scenario: &Scenario, slow: &[Rates]) -> Change {
     for bus in [&mut changed.bus].into_iter().chain(additional) {
         bus.step_period_cycles = bus.step_period_cycles.min(period);
     }
-    let whose = if scenario.controllers.is_empty() { "" } else { " on all controllers" };
-    Some((format!("slot {period} cycles{whose}"), changed))
+    let scope = if scenario.controllers.is_empty() { "" } else { " on all controllers" };
+    Some((format!("slot {period} cycles{scope}"), changed))
 }
 
 fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
@@ -105,14 +101,15 @@ fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
         };
         for axis in axes {
             let mechanics = axis.mechanics.clone();
-            for each in &mut axis.moves {
-                let alone = Axis { mechanics: mechanics.clone(), moves: [each.clone()].into(), motor: None };
-                let Ok(plan) = plan_axis(&alone, "axis") else { continue };
+            for planned in &mut axis.moves {
+                let single_move =
+                    Axis { mechanics: mechanics.clone(), moves: [planned.clone()].into(), motor: None };
+                let Ok(plan) = plan_axis(&single_move, "axis") else { continue };
                 let factor = plan.peaks().speed / rates.limit;
                 if factor <= 1.0 {
                     continue;
                 }
-                let time_s = match each {
+                let time_s = match planned {
                     Move::Cosine(cosine) => &mut cosine.duration_s,
                     Move::Ramps(ramps) => &mut ramps.duration_s,
                     Move::Sine(sine) => &mut sine.period_s,
@@ -167,7 +164,7 @@ mod tests {
         // A pulse of 1500 cycles does not fit into a slot of 1000.
         let long_pulse = r#"{"bus":{"step_period_cycles":2000,"slots":10,"pulse_width_cycles":1500}}"#;
         assert_eq!(offers(long_pulse), ["more time for the move: 0.8 s"]);
-        // Segments run one controller alone.
+        // Segments need a single controller.
         let two = r#"{"bus":{"step_period_cycles":2000,"slots":10},"line":{"address":1},
             "controllers":[{"address":2,"bus":{"step_period_cycles":2000,"slots":10},"axes":[]}],
             "source":{"motion":{"axes":[{"moves":[{"cosine":{}}]}]}}}"#;

@@ -17,13 +17,13 @@ use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 pub struct EntryFormat {
     pub name: &'static str,
     /// Bits of the fraction of a cycle in interval and add, at most 16.
-    pub fraction_bits: u32,
+    pub(super) fraction_bits: u32,
     /// 32 or 64, unsigned.
-    pub interval_bits: u32,
+    interval_bits: u32,
     /// 16 or 32, unsigned.
-    pub count_bits: u32,
+    count_bits: u32,
     /// 16 or 64, signed.
-    pub add_bits: u32,
+    add_bits: u32,
 }
 
 impl EntryFormat {
@@ -38,6 +38,38 @@ impl EntryFormat {
         Self { name: "ticks", fraction_bits: 0, interval_bits: 32, count_bits: 16, add_bits: 16 };
     /// All formats.
     pub const ALL: [Self; 3] = [Self::Q16, Self::Q8, Self::TICKS];
+
+    /// A format of your own: bits of a cycle's fraction, and of interval, count and add. `None` unless the fraction has
+    /// at most 16 bits, and the numbers have whole bytes: up to 64, 32 and 64 bits.
+    #[must_use]
+    pub const fn new(name: &'static str, fraction_bits: u32, widths: [u32; 3]) -> Option<Self> {
+        let [interval_bits, count_bits, add_bits] = widths;
+        let format = Self { name, fraction_bits, interval_bits, count_bits, add_bits };
+        if format.is_valid() { Some(format) } else { None }
+    }
+
+    /// Whether the numbers fit into an [`Entry`], in whole bytes.
+    const fn is_valid(self) -> bool {
+        const fn is_width(bits: u32, max: u32) -> bool {
+            bits >= 8 && bits <= max && bits.is_multiple_of(8)
+        }
+        self.fraction_bits <= FRACTION_BITS
+            && is_width(self.interval_bits, u64::BITS)
+            && is_width(self.count_bits, u32::BITS)
+            && is_width(self.add_bits, i64::BITS)
+    }
+
+    /// Bits of a cycle's fraction in interval and add, 0 to 16.
+    #[must_use]
+    pub const fn fraction_bits(self) -> u32 {
+        self.fraction_bits
+    }
+
+    /// Bits of interval (unsigned), count (unsigned) and add (signed).
+    #[must_use]
+    pub const fn widths(self) -> [u32; 3] {
+        [self.interval_bits, self.count_bits, self.add_bits]
+    }
 
     /// Bytes per entry.
     #[must_use]
@@ -115,18 +147,8 @@ impl EntryFormat {
     }
 }
 
-// Numbers of all formats fit into an [`Entry`], in whole bytes.
-const _: () = {
-    let mut index = 0;
-    while index < EntryFormat::ALL.len() {
-        let format = EntryFormat::ALL[index];
-        assert!(format.fraction_bits <= FRACTION_BITS);
-        assert!(format.interval_bits <= u64::BITS && format.interval_bits.is_multiple_of(8));
-        assert!(format.count_bits <= u32::BITS && format.count_bits.is_multiple_of(8));
-        assert!(format.add_bits <= i64::BITS && format.add_bits.is_multiple_of(8));
-        index += 1;
-    }
-};
+const _: () =
+    assert!(EntryFormat::Q16.is_valid() && EntryFormat::Q8.is_valid() && EntryFormat::TICKS.is_valid());
 
 /// An entry of a step table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -216,6 +238,26 @@ mod tests {
             pack(EntryFormat::TICKS, vec![part]),
             Err(Cause::Value(ValueError::Conflict { .. }))
         ));
+    }
+
+    #[test]
+    fn invalid_widths_make_no_format() {
+        let rows = [
+            (0, [8, 8, 8], true),
+            (16, [64, 32, 64], true),
+            (17, [64, 32, 64], false),
+            (0, [0, 16, 16], false),
+            (0, [32, 0, 16], false),
+            (0, [32, 16, 0], false),
+            (0, [72, 16, 16], false),
+            (0, [32, 40, 16], false),
+            (0, [32, 16, 72], false),
+            (0, [12, 16, 16], false),
+        ];
+        for (fraction_bits, widths, is_valid) in rows {
+            let format = EntryFormat::new("own", fraction_bits, widths);
+            assert_eq!(format.is_some(), is_valid, "{fraction_bits} {widths:?}");
+        }
     }
 
     #[test]

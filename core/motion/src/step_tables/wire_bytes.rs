@@ -18,7 +18,7 @@ const MAX_COMMANDS: u64 = 64 - FRAME;
 
 /// Bytes of the entries in blocks; `None` for a format whose numbers `queue_step` does not accept.
 pub(super) fn wire_bytes(format: EntryFormat, entries: &[Entry]) -> Option<u64> {
-    let EntryFormat { fraction_bits, interval_bits, count_bits, add_bits, .. } = format;
+    let (fraction_bits, [interval_bits, count_bits, add_bits]) = (format.fraction_bits(), format.widths());
     if (fraction_bits, interval_bits, count_bits, add_bits) != (0, 32, 16, 16) {
         return None;
     }

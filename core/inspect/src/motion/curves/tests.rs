@@ -1,4 +1,4 @@
-//! Columns against a look at everything in them.
+//! Columns compared with many samples of each.
 
 use super::*;
 use crate::trace::stored_run::Recording;
@@ -50,11 +50,11 @@ const MOTIONS: &[&str] = &[
 const SEGMENTS: &str = r#"{"segments":{"channels":[{"segments":[{"steps":{"count":10}},{"dwell":{"length_q16":5242880000}},
     {"steps":{"count":40,"interval_q16":524288000,"add_q16":-8000000,"dir":0}},{"dwell":{"length_q16":9000000000}}]}]}}"#;
 
-/// From the whole down to a part of a tick, in parts of the length of the motion.
+/// From the extremes_of down to a part of a tick, in parts of the length of the motion.
 const WINDOWS: &[(f64, f64, usize)] =
     &[(-0.05, 1.1, 37), (0.2, 0.45, 64), (0.5, 0.5003, 9), (-0.1, -0.05, 3)];
 
-fn whole(values: impl Iterator<Item = f64>) -> (f64, f64) {
+fn extremes_of(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
@@ -76,9 +76,9 @@ fn extremes_equal_those_of_a_thousand_samples_per_column() {
                 for column in 0..columns {
                     let samples = (0..1000)
                         .map(|k| window.edge_s(column) + (f64::from(k) + 0.5) / 1000.0 * window.width_s());
-                    let (low, high) = whole(samples.map(|t| value(t - zero_s)));
+                    let (low, high) = extremes_of(samples.map(|t| value(t - zero_s)));
                     let (found_low, found_high) = (band.min[column], band.max[column]);
-                    // The looks are inside the extremes, and come as near as a thousand can.
+                    // Samples are inside the extremes and close to them.
                     let (slack, near) = (1e-6 * scale, 0.006 * scale);
                     let what = format!(
                         "{moves} {from}..{to}, column {column}: {low} {high}, found {found_low} {found_high}"
@@ -109,15 +109,15 @@ fn actual_columns_include_every_step_and_tick() {
                     .steps
                     .iter()
                     .filter(|step| (start..end).contains(&(step.cycle as f64 / pulses.hz())));
-                let places = before.map_or(0, |step| step.position);
+                let first = before.map_or(0, |step| step.position);
                 let expected =
-                    whole([places].into_iter().chain(inside.map(|step| step.position)).map(f64::from));
+                    extremes_of([first].into_iter().chain(inside.map(|step| step.position)).map(f64::from));
                 assert_eq!((position.min[column], position.max[column]), expected, "{from}..{to}, {column}");
 
                 let touching = || rates.iter().filter(|rate| rate.from_s < end && rate.to_s > start);
                 let covered: f64 = touching().map(|rate| rate.to_s.min(end) - rate.from_s.max(start)).sum();
-                let still = (covered < (end - start) * (1.0 - 1e-9)).then_some(0.0);
-                let expected = whole(touching().map(|rate| rate.speed).chain(still));
+                let standstill = (covered < (end - start) * (1.0 - 1e-9)).then_some(0.0);
+                let expected = extremes_of(touching().map(|rate| rate.speed).chain(standstill));
                 assert_eq!((speed.min[column], speed.max[column]), expected, "{from}..{to}, {column}");
             }
         }
@@ -139,11 +139,11 @@ fn the_speed_is_zero_in_a_dwell() {
     }
 }
 
-/// Greatest distance of the drawn line from the true curve, in pixels of a chart of `columns` by `height`, looked at
+/// Maximum distance of the drawn line from the true curve, in pixels of a chart of `columns` by `height`, measured
 /// between its points.
-fn corner(plan: &AxisPlan, window: Window, height: f64) -> f64 {
+fn max_deviation(plan: &AxisPlan, window: Window, height: f64) -> f64 {
     let line = ideal_line(plan, 0.0, window);
-    // What is narrower than a thousandth of a column stands upright.
+    // Points closer than 1/1000 column make a vertical line, which is left out.
     let column_s = (window.end_s - window.start_s) / window.columns as f64;
     let mut worst: f64 = 0.0;
     for (values, curve) in [
@@ -151,15 +151,15 @@ fn corner(plan: &AxisPlan, window: Window, height: f64) -> f64 {
         (&line.speed, |plan, t| plan.speed(t)),
         (&line.acceleration, |plan, t| plan.acceleration(t)),
     ] {
-        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let max = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         for (at, pair) in
             line.time_s.windows(2).enumerate().filter(|(_, pair)| pair[1] - pair[0] > 1e-3 * column_s)
         {
             for part in [0.25, 0.5, 0.75] {
                 let t = pair[0] + (pair[1] - pair[0]) * part;
                 let drawn = values[at] + (values[at + 1] - values[at]) * part;
-                worst = worst.max((drawn - curve(plan, t)).abs() / (most - least).max(1e-9) * height);
+                worst = worst.max((drawn - curve(plan, t)).abs() / (max - min).max(1e-9) * height);
             }
         }
     }
@@ -167,12 +167,12 @@ fn corner(plan: &AxisPlan, window: Window, height: f64) -> f64 {
 }
 
 #[test]
-fn the_line_of_an_ideal_curve_has_no_corner_that_can_be_seen() {
+fn lines_deviate_less_than_a_tenth_of_a_pixel_from_their_curve() {
     let others = [
         r#"{"jerk_limited":{"distance":{"steps":3000}}}"#,
         r#"{"ramps":{"distance":{"steps":3200}}}"#,
         r#"{"sine":{"amplitude":{"steps":400},"period_s":1,"periods":3}}"#,
-        // Seven columns a period; of less than four a line visits the extremes alone.
+        // Seven columns per period; with fewer than four a line connects only the extremes.
         r#"{"sine":{"amplitude":{"steps":50},"period_s":0.01,"periods":28}}"#,
     ];
     for moves in MOTIONS.iter().chain(&others) {
@@ -181,7 +181,7 @@ fn the_line_of_an_ideal_curve_has_no_corner_that_can_be_seen() {
         for columns in [200, 700, 1500] {
             let window = Window { start_s: 0.0, end_s: plan.duration_s(), columns };
             // Device pixels: a chart 200 of them high.
-            let worst = corner(plan, window, 200.0);
+            let worst = max_deviation(plan, window, 200.0);
             assert!(worst <= 0.1, "{moves}: {worst} px in {columns} columns");
         }
     }
@@ -198,41 +198,30 @@ fn a_line_through_more_periods_than_columns_visits_its_extremes() {
 }
 
 #[test]
-fn the_acceleration_of_steps_is_that_of_their_figures_and_near_their_plans() {
+fn acceleration_of_steps_equals_their_figures_and_is_near_their_plan() {
     use crate::recording::figures::StepFigures;
     let json = r#"{"source":{"motion":{"engine":"segments","axes":[{"moves":[{"cosine":{}},
         {"cosine":{"distance":{"steps":-3200}}}]}]}}}"#;
     let experiment = stepscope_sim::Experiment::from_json(json).expect("no problems");
     let mut recording = crate::trace::stored_run::Recording::default();
     experiment.run(&mut recording);
-    let made = stepscope_peripheral::trace::steps(&recording.trace, 0);
-    let pulses = Pulses::recorded(0, &made, 16_000_000);
-    let end_s = made.last().expect("steps").cycle as f64 / 16e6;
+    let actual_steps = stepscope_peripheral::trace::steps(&recording.trace, 0);
+    let pulses = Pulses::recorded(0, &actual_steps, 16_000_000);
+    let end_s = actual_steps.last().expect("steps").cycle as f64 / 16e6;
     let band = actual_acceleration(&pulses, Window { start_s: 0.0, end_s, columns: 97 });
-    let greatest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    let figures = StepFigures::of(made.iter().copied(), 16_000_000).expect("steps");
-    let most = greatest(&band.max).max(greatest(&band.min));
-    assert_eq!(Some(most), figures.greatest_acceleration_steps_s2);
-    // 2 pi n/T^2 of a cosine, up to the right, down to the left; nothing is told around the turn.
+    let magnitude = |values: &[f64]| values.iter().fold(0.0_f64, |max, value| max.max(value.abs()));
+    let figures = StepFigures::of(actual_steps.iter().copied(), 16_000_000).expect("steps");
+    let max = magnitude(&band.max).max(magnitude(&band.min));
+    assert_eq!(Some(max), figures.greatest_acceleration_steps_s2);
+    // 2 pi n/T^2 of a cosine, up to the right, down to the left; it is unknown around the reversal.
     let peak = 2.0 * std::f64::consts::PI * 3200.0 / 0.16;
-    assert!((most / peak - 1.0).abs() < 0.01, "{most} {peak}");
+    assert!((max / peak - 1.0).abs() < 0.01, "{max} {peak}");
     assert!(band.max[12] > 0.9 * peak && band.min[36] < -0.9 * peak && band.min[60] < -0.9 * peak);
     assert!(band.max.iter().any(|value| value.is_nan()));
-    // What a narrower look shows is a part of it.
+    // A narrower window shows a part of it.
     let part = actual_acceleration(&pulses, Window { start_s: 0.2, end_s: 0.2001, columns: 3 });
     assert!(part.max.iter().all(|value| value.abs() < 0.1 * peak), "{part:?}");
-    let few = Pulses::recorded(0, &made[..16], 16_000_000);
+    let few = Pulses::recorded(0, &actual_steps[..16], 16_000_000);
     let none = actual_acceleration(&few, Window { start_s: 0.0, end_s, columns: 97 });
     assert!(none.max.iter().all(|value| value.is_nan()));
-}
-
-#[test]
-fn a_column_has_minimum_and_maximum() {
-    use crate::motion::curves::{Window, ideal};
-    use stepscope_motion::{moves::Axis, plan_axis};
-
-    let plan = plan_axis(&Axis::default(), "x").expect("it can be planned");
-    let curves = ideal(&plan, 0.0, Window { start_s: 0.0, end_s: 0.4, columns: 4 });
-    let top = curves.speed.max.iter().fold(0.0, |top: f64, speed| top.max(*speed));
-    assert_eq!(top, 16_000.0); // no column leaves a peak out
 }

@@ -11,6 +11,7 @@ use serde::Serialize;
 use stepscope_motion::{AxisPlan, Breakpoints, Interval};
 use stepscope_peripheral::trace::Step;
 
+/// Samples of [`CurveMetrics::sum_of_squares_steps2`].
 pub const POINTS: u32 = 2048;
 
 /// Deviation of the second curve from the first, in steps.
@@ -23,6 +24,7 @@ pub struct CurveMetrics {
     pub area_steps_s: f64,
     /// Integral of second - first, in steps times s; 0 where only rounding is left.
     pub area_difference_steps_s: f64,
+    /// Number of samples of the sum of squares.
     pub points: u32,
     pub sum_of_squares_steps2: f64,
     pub euclidean_steps: f64,
@@ -81,13 +83,13 @@ impl Sums {
         let of_both = mean(self.product) - first * off;
         let of_second = of_first + 2.0 * of_both + of_off;
         // A constant curve leaves only rounding.
-        let least = 1e-12 * mean(self.first_square);
-        let correlation = (of_first > least && of_second > least)
+        let rounding = 1e-12 * mean(self.first_square);
+        let correlation = (of_first > rounding && of_second > rounding)
             .then(|| (of_first + of_both) / libm::sqrt(of_first * of_second));
         let uncorrelated = correlation.map(|correlation| {
             // 1 - r^2 = (1 - r)*(1 + r), without the cancellation in 1 - r.
-            let rest = (of_first * of_off - of_both * of_both) / (of_first * of_second);
-            if correlation > 0.0 { libm::fmax(0.0, rest / (1.0 + correlation)) } else { 1.0 - correlation }
+            let square = (of_first * of_off - of_both * of_both) / (of_first * of_second);
+            if correlation > 0.0 { libm::fmax(0.0, square / (1.0 + correlation)) } else { 1.0 - correlation }
         });
         CurveMetrics {
             largest_steps: self.largest,
@@ -113,16 +115,16 @@ pub(super) fn curve_and_steps(
 ) -> CurveMetrics {
     let mut sums = Sums::default();
     let (mut since_s, mut held) = (0.0, 0.0);
-    let mut stay = |since_s: f64, to_s: f64, held: f64| {
+    let mut add_interval = |since_s: f64, to_s: f64, held: f64| {
         breakpoints
             .intervals(since_s, to_s, &mut |interval| curve_and_held(plan, interval, held, hz, &mut sums));
     };
     for step in steps {
         let at_s = step.cycle as f64 / hz;
-        stay(since_s, at_s, held);
+        add_interval(since_s, at_s, held);
         (since_s, held) = (at_s, f64::from(step.position));
     }
-    stay(since_s, length_s, held);
+    add_interval(since_s, length_s, held);
     sample(&mut sums, length_s, |t| position_at(steps, hz, t) - plan.position(t));
     sums.ended()
 }
@@ -132,7 +134,7 @@ fn curve_and_held(plan: &AxisPlan, interval: Interval, held: f64, hz: f64, sums:
     // Just inside: a table's curve ends with a jump of half a step.
     let inset = (interval.to_s - interval.from_s) * 1e-9;
     let ends = [interval.from_s + inset, interval.to_s - inset].map(|t| (t, off(t)));
-    // Shorter than a cycle: rounding of the step's time.
+    // A shorter interval than a cycle is rounding of the step's time.
     if (interval.to_s - interval.from_s) * hz > 0.75 {
         ends.into_iter().for_each(|(t, off)| sums.extreme(t, off));
     }
@@ -178,19 +180,19 @@ fn crossing([mut low, mut high]: [(f64, f64); 2], off: impl Fn(f64) -> f64) -> f
 pub(super) fn steps_and_steps(first: &[Step], second: &[Step], hz: f64, length_s: f64) -> CurveMetrics {
     let mut sums = Sums::default();
     // From before the start, so that a step in cycle 0 is a change.
-    let mut walk = Difference::from([first, second].map(|steps| Scaled { steps, hz, unit: 1.0 }), -1.0);
+    let mut positions = Difference::from([first, second].map(|steps| Scaled { steps, hz, unit: 1.0 }), -1.0);
     let (mut since_s, mut held) = (0.0, [0.0; 2]);
-    let mut stay = |since_s: f64, to_s: f64, [first, second]: [f64; 2]| {
+    let mut add_interval = |since_s: f64, to_s: f64, [first, second]: [f64; 2]| {
         if to_s > since_s {
             sums.extreme(since_s, second - first);
             sums.interval(&[(first, second - first, to_s - since_s)]);
         }
     };
-    walk.changes(length_s, &mut |time_s, now| {
-        stay(since_s, time_s, held);
+    positions.changes(length_s, &mut |time_s, now| {
+        add_interval(since_s, time_s, held);
         (since_s, held) = (time_s, now);
     });
-    stay(since_s, length_s, held);
+    add_interval(since_s, length_s, held);
     sample(&mut sums, length_s, |t| position_at(second, hz, t) - position_at(first, hz, t));
     sums.ended()
 }

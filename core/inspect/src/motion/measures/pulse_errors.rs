@@ -8,7 +8,7 @@ use serde::Serialize;
 use stepscope_motion::AxisPlan;
 use stepscope_peripheral::trace::Step;
 
-/// Time errors in s, late positive; position errors in steps.
+/// Time errors in s, positive if late; position errors in steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PulseErrors {
     pub pulses: u64,
@@ -26,7 +26,7 @@ struct Errors {
     found: PulseErrors,
     time: f64,
     time_square: f64,
-    place_square: f64,
+    position_square: f64,
 }
 
 impl Errors {
@@ -34,7 +34,7 @@ impl Errors {
         self.found.pulses += 1;
         self.time += late_s;
         self.time_square += late_s * late_s;
-        self.place_square += steps * steps;
+        self.position_square += steps * steps;
         if libm::fabs(late_s) > libm::fabs(self.found.largest_s) {
             (self.found.largest_s, self.found.largest_at_s) = (late_s, at_s);
         }
@@ -48,7 +48,7 @@ impl Errors {
         PulseErrors {
             mean_s: self.time / count,
             rms_s: libm::sqrt(self.time_square / count),
-            rms_steps: libm::sqrt(self.place_square / count),
+            rms_steps: libm::sqrt(self.position_square / count),
             ..self.found
         }
     }
@@ -91,6 +91,7 @@ fn distance(plan: &AxisPlan, from_s: f64, to_s: f64, hz: f64) -> f64 {
     plan.position(to_s - 1.0 / hz) - plan.position(from_s - 1.0 / hz)
 }
 
+/// Consecutive steps in one direction.
 struct Run {
     first: usize,
     cycle: u64,

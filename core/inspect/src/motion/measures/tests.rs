@@ -55,7 +55,7 @@ fn close(found: f64, expected: f64, within: f64, what: &str) {
     assert!((found - expected).abs() <= within, "{what}: {found} is not {expected}");
 }
 
-/// By a great number of looks, each in the middle of its part.
+/// Metrics of many samples, each in the middle of its interval.
 fn brute(length_s: f64, first: impl Fn(f64) -> f64, second: impl Fn(f64) -> f64) -> CurveMetrics {
     // Not in step with the slots of a tick.
     let samples = 912_347_u32;
@@ -113,13 +113,13 @@ const MOTIONS: &[&str] = &[
 ];
 
 #[test]
-fn comparisons_equal_those_of_a_million_samples() {
+fn metrics_equal_those_of_many_samples() {
     for moves in MOTIONS {
         let ran = Ran::of(&scenario(moves, "ticks"));
         let (found, plan, pulses) = (ran.measures(), ran.plan(), ran.pulses());
         let hz = pulses.hz();
         let zero = ran.recording.first_tick().expect("ticks").0;
-        let made: Vec<Step> =
+        let actual: Vec<Step> =
             ran.steps.iter().map(|step| Step { cycle: step.cycle - zero, ..*step }).collect();
         let (due, _) = due_steps(plan, 16_000_000);
         let at = |steps: &[Step], t: f64| {
@@ -128,13 +128,13 @@ fn comparisons_equal_those_of_a_million_samples() {
         };
         let length = found.length_s;
         same(&found.steps, &brute(length, |t| plan.position(t), |t| at(&due, t)), length, moves);
-        same(&found.ticks, &brute(length, |t| at(&due, t), |t| at(&made, t)), length, moves);
-        same(&found.pulses, &brute(length, |t| plan.position(t), |t| at(&made, t)), length, moves);
+        same(&found.ticks, &brute(length, |t| at(&due, t), |t| at(&actual, t)), length, moves);
+        same(&found.pulses, &brute(length, |t| plan.position(t), |t| at(&actual, t)), length, moves);
     }
 }
 
 #[test]
-fn a_constant_rate_has_the_figures_of_a_saw() {
+fn a_constant_rate_has_the_metrics_of_a_sawtooth() {
     let found = measured(r#"{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}}"#);
     // Half a step to either side, each step in the middle of its ms and in a whole cycle.
     let steps = found.steps;
@@ -143,12 +143,12 @@ fn a_constant_rate_has_the_figures_of_a_saw() {
     close(steps.area_steps_s, 0.025, 1e-9, "area");
     close(steps.area_difference_steps_s, 0.0, 1e-12, "areas");
     close(found.step_errors.largest_s, 0.0, 1e-12, "time");
-    close(found.step_errors.largest_steps, 0.0, 1e-9, "place");
-    // Of 1000 steps/s an error in time is one in place, and late means behind.
+    close(found.step_errors.largest_steps, 0.0, 1e-9, "position");
+    // At 1000 steps/s 1 ms late is one step behind.
     let ticks = found.tick_errors;
     assert_eq!((ticks.pulses, found.counts), (100, Counts { due: 100, actual: 100, stray: 0 }));
-    close(ticks.largest_steps, ticks.largest_s * 1000.0, 1e-9, "place of time");
-    close(ticks.rms_steps, ticks.rms_s * 1000.0, 1e-9, "place of time");
+    close(ticks.largest_steps, ticks.largest_s * 1000.0, 1e-9, "position of time");
+    close(ticks.rms_steps, ticks.rms_s * 1000.0, 1e-9, "position of time");
     close(found.ticks.area_difference_steps_s, -100.0 * ticks.mean_s, 1e-9, "area of time");
     // One pulse after the other, by their own cycles.
     let ran =
@@ -166,7 +166,7 @@ fn a_constant_rate_has_the_figures_of_a_saw() {
 }
 
 #[test]
-fn steps_are_within_half_a_step_and_half_a_cycle_and_segments_add_nothing() {
+fn segments_add_no_error_to_scheduled_steps() {
     for moves in MOTIONS {
         let found = Ran::of(&scenario(moves, "segments")).measures();
         let speed = found.peaks.speed_steps_s;
@@ -181,7 +181,7 @@ fn steps_are_within_half_a_step_and_half_a_cycle_and_segments_add_nothing() {
             );
         }
         assert!(found.step_errors.largest_s.abs() <= 0.5 / 16e6 + 1e-15, "{moves}: {:?}", found.step_errors);
-        // Errors that are spread evenly over a cycle have an r.m.s. of 0.29 of it.
+        // Errors that are spread evenly over a cycle have an RMS of 0.29 of it.
         assert!(found.step_errors.rms_s < 0.33 / 16e6, "{moves}: {:?}", found.step_errors);
         let none = PulseErrors { pulses: found.counts.due, ..PulseErrors::default() };
         assert_eq!((found.tick_errors, found.counts.stray), (none, 0), "{moves}");
@@ -201,7 +201,7 @@ fn ticks_delay_less_than_a_tick_and_canceled_steps_shift_no_others() {
         assert!(found.tick_errors.largest_s.abs() < 0.002, "{moves}: {:?}", found.tick_errors);
         assert!(found.tick_errors.rms_s > 1e-6, "{moves}: {:?}", found.tick_errors);
     }
-    // A step of a fifth of a ms to and fro within one tick is not made; the others are in their places.
+    // Opposite steps within one tick cancel; the others are at their positions.
     let fine = r#"{"constant":{"distance":{"steps":25},"speed":{"steps_s":5000}}},
         {"constant":{"distance":{"steps":-26},"speed":{"steps_s":5000}}}"#;
     let found = measured(fine);
@@ -210,16 +210,16 @@ fn ticks_delay_less_than_a_tick_and_canceled_steps_shift_no_others() {
 }
 
 #[test]
-fn pulses_that_a_broken_line_lost_leave_the_others_with_their_steps() {
+fn lost_pulses_do_not_shift_the_others() {
     // The second of the packets that arrive is broken.
     let json = r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}}]}]}},
         "line":{"glitches":[{"start_cycle":100000,"length_cycles":40000,"level":0}]}}"#;
     let found = Ran::of(json).measures();
-    let Counts { due, actual: made, stray } = found.counts;
-    assert!(due == 100 && made < 100 && stray == 0, "{:?}", found.counts);
-    // What is left goes over the first places, later than it should.
+    let Counts { due, actual, stray } = found.counts;
+    assert!(due == 100 && actual < 100 && stray == 0, "{:?}", found.counts);
+    // The other pulses reach the first positions later than planned.
     assert!(
-        found.tick_errors.largest_s > 0.001 && found.tick_errors.pulses == made,
+        found.tick_errors.largest_s > 0.001 && found.tick_errors.pulses == actual,
         "{:?}",
         found.tick_errors
     );
@@ -236,10 +236,10 @@ fn the_start_stop_rate_is_the_jump_from_standstill() {
         r#"{"trapezoid":{"distance":{"steps":3000},"start_speed":{"steps_s":250},"method":"exact"}}"#;
     let rows = [
         (constant(100, 1000), 1000.0),
-        // Faster at once, but not from rest; and slower before the end.
+        // Jumps between speeds do not count.
         (format!("{},{},{}", constant(50, 500), constant(100, 2000), constant(50, 400)), 500.0),
         (format!("{},{},{}", constant(50, 500), dwell, constant(-100, 900)), 900.0),
-        // A turn is a stop and a start.
+        // A reversal is a stop and a start.
         (
             format!(
                 "{},{},{},{}",
@@ -257,7 +257,7 @@ fn the_start_stop_rate_is_the_jump_from_standstill() {
     for (moves, expected) in rows {
         close(measured(&moves).peaks.start_stop_steps_s, expected, 1e-6, &moves);
     }
-    // A sine's segments turn round at the first one's rate.
+    // A sine by segments reverses at the rate of its first segment.
     let ran = Ran::of(&scenario(MOTIONS[3], "ticks"));
     let Profile::SineSegments(sine) = &ran.plan().moves()[1].profile else { panic!("a sine") };
     close(ran.measures().peaks.start_stop_steps_s, sine.segments()[0].rate, 1e-6, "a sine");
@@ -271,7 +271,7 @@ fn a_duration_is_compared_with_the_requested_one() {
     // The last pulse comes before the end of the last tick, 0.4 s.
     assert!(found.last_pulse_s.unwrap() < 0.4 && found.last_due_s.unwrap() < 0.4);
     assert_eq!(found.end_error_s, Some(found.last_pulse_s.unwrap() - found.last_due_s.unwrap()));
-    // The document's slices miss the time by up to 0.8 %.
+    // The slices of the paper miss the time by up to 0.8 %.
     let sliced = r#"{"cosine":{"distance":{"steps":3111},"duration_s":0.4,"ramp_s":0.15,"method":"sliced"}}"#;
     let found = measured(sliced).duration;
     let error = found.plan_error_s.unwrap();
@@ -280,7 +280,12 @@ fn a_duration_is_compared_with_the_requested_one() {
     let trapezoid = r#"{"trapezoid":{"distance":{"steps":3000}}}"#;
     assert_eq!(measured(trapezoid).duration.requested_s, None);
     let found = measured(&format!("{trapezoid},{cosine}")).duration;
-    close(found.requested_s.unwrap(), found.planned_s, 1e-12, "what names no time is as planned");
+    close(
+        found.requested_s.unwrap(),
+        found.planned_s,
+        1e-12,
+        "a move without a requested time counts as planned",
+    );
     let found = measured(r#"{"dwell":{"duration_s":0.1}}"#);
     assert_eq!((found.duration.last_due_s, found.duration.end_error_s), (None, None));
     assert_eq!((found.pulses.correlation, found.pulses.rms_steps, found.length_s), (None, 0.0, 0.1));
@@ -315,21 +320,4 @@ fn the_papers_distance_comes_from_its_512_points() {
         assert!(found.quarter.correlation.unwrap() > 0.999);
     }
     assert_eq!(measured(r#"{"dwell":{"duration_s":0.1}}"#).sine, None);
-}
-
-#[test]
-fn the_pulses_of_the_default_motion_are_near_its_curve() {
-    use crate::motion::{actual_motion::Pulses, measures::Measures};
-    use crate::trace::stored_run::Recording;
-    use stepscope_peripheral::trace::steps;
-    use stepscope_sim::Experiment;
-
-    let experiment = Experiment::from_json("{}").expect("the default motion");
-    let mut recording = Recording::default();
-    experiment.run(&mut recording);
-    let made = steps(&recording.trace, 0);
-    let pulses = Pulses::of_run(0, &made, &recording.packets, None, experiment.config());
-    let measures = Measures::of(&experiment.plans()[0], &pulses, None);
-    assert_eq!((measures.counts.due, measures.counts.actual, measures.counts.stray), (3200, 3200, 0));
-    assert_eq!(measures.peaks.speed_steps_s, 16_000.0);
 }

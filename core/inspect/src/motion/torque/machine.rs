@@ -8,7 +8,7 @@ use stepscope_scenario::{PlantMotor, PlantSettings, Scenario};
 use stepscope_sim::axes_of;
 
 const MILLI: f64 = 1000.0;
-/// kg*m^2 in a g*cm^2.
+/// kg*m^2 per g*cm^2.
 const GRAM_CM2: f64 = 1e-7;
 const MIN_PERIOD_S: f64 = 1e-6;
 
@@ -46,6 +46,7 @@ impl Machine {
         })
     }
 
+    /// The motor of a plant, without a working rate.
     pub fn of_plant(motor: &stepscope_plant::parameters::MotorModel, supply_v: f64) -> Self {
         Self {
             constant: motor.holding_torque_mn_m / MILLI / (SQRT_2 * motor.rated_current_a),
@@ -76,8 +77,7 @@ impl Machine {
         Self::of(&Axis { mechanics, motor: Some(motor), ..Axis::default() })
     }
 
-    /// Period of the rotor with its load in the field of the regulated current, in s: 2*pi*sqrt(J/(p*k*I)), at least
-    /// 1 us.
+    /// Period of the rotor in the field of the regulated current, in s: 2*pi*sqrt(J/(p*k*I)), at least 1 us.
     pub fn natural_period_s(&self) -> f64 {
         let stiffness = self.pole_pairs * self.constant * self.current_a;
         libm::fmax(2.0 * PI * libm::sqrt(self.inertia_kg_m2 / stiffness), MIN_PERIOD_S)
@@ -87,10 +87,12 @@ impl Machine {
         libm::fmax(1.0, libm::round(PI / (4.0 * self.pole_pairs * self.step_rad))) as usize
     }
 
+    /// The maximum rate in steps/s that the motor's data states.
     pub fn working_rate(&self) -> Option<f64> {
         self.working_rate
     }
 
+    /// Torque of the load in mN*m.
     pub fn load_mn_m(&self) -> f64 {
         self.load_n_m * MILLI
     }
@@ -102,14 +104,13 @@ impl Machine {
         let back_emf = self.constant * speed;
         let (r, x) = (self.resistance_ohm, self.pole_pairs * speed * self.inductance_h);
         let square = r * r + x * x;
-        // The voltage's disc: around -E/Z = -E*(R - j*X)/|Z|^2.
-        let centre = (-back_emf * r / square, back_emf * x / square);
+        // The disc of the voltage: around -E/Z = -E*(R - j*X)/|Z|^2.
+        let center = (-back_emf * r / square, back_emf * x / square);
         let radius = self.supply_v / libm::sqrt(square);
-        MILLI * self.constant * most_real(self.current_a, centre, radius)
+        MILLI * self.constant * max_real_part(self.current_a, center, radius)
     }
 
-    /// Torque in mN*m in the direction of motion that a signed speed and acceleration need; negative where the motor
-    /// brakes.
+    /// Torque in mN*m that a signed speed and acceleration need; negative if the motor brakes.
     pub fn needed_mn_m(&self, speed: f64, acceleration: f64) -> f64 {
         // From standstill it moves in the direction of the acceleration.
         let ahead = if speed == 0.0 { acceleration } else { speed };
@@ -133,10 +134,9 @@ impl Machine {
         }
     }
 
-    /// Maximum rate in steps/s with the full regulated current; 0 if voltage limits at rest, `None` if it never does
-    /// up to 10^7 steps/s.
+    /// Maximum rate in steps/s with the full regulated current; `None` if above 10^7 steps/s.
     pub fn corner_rate(&self) -> Option<f64> {
-        greatest(|rate| {
+        highest_rate(|rate| {
             let speed = rate * self.step_rad;
             let real = self.constant * speed + self.resistance_ohm * self.current_a;
             let imaginary = self.pole_pairs * speed * self.inductance_h * self.current_a;
@@ -144,20 +144,20 @@ impl Machine {
         })
     }
 
-    /// Maximum rate in steps/s with enough torque for the load at constant speed; 0 for none, `None` for all up to
-    /// 10^7 steps/s.
+    /// Maximum rate in steps/s with enough torque for the load; 0 for none, `None` if above 10^7 steps/s.
     pub fn torque_rate(&self) -> Option<f64> {
-        greatest(|rate| self.available_mn_m(rate) >= self.load_mn_m())
+        highest_rate(|rate| self.available_mn_m(rate) >= self.load_mn_m())
     }
 
     /// f_s of Song 2021: the lower of [`Self::torque_rate`] and [`Self::working_rate`], in steps/s.
-    pub fn greatest_rate(&self) -> Option<f64> {
+    pub fn max_rate(&self) -> Option<f64> {
         match (self.torque_rate(), self.working_rate) {
             (Some(by_torque), Some(stated)) => Some(libm::fmin(by_torque, stated)),
             (by_torque, stated) => by_torque.or(stated),
         }
     }
 
+    /// `points` rates from 0 to `max_rate` with their available torque.
     pub fn curve(&self, max_rate: f64, points: u32) -> impl Iterator<Item = (f64, f64)> + '_ {
         let last = f64::from(points.saturating_sub(1).max(1));
         (0..points).map(move |point| {
@@ -169,35 +169,34 @@ impl Machine {
     /// The rate up to which to draw a curve, in steps/s.
     pub fn shown_rate(&self, used: f64) -> f64 {
         let corner = self.corner_rate().unwrap_or(0.0);
-        let greatest = self.greatest_rate().unwrap_or(0.0);
-        let max = libm::fmax(libm::fmax(used, greatest), 2.0 * corner);
+        let usable = self.max_rate().unwrap_or(0.0);
+        let max = libm::fmax(libm::fmax(used, usable), 2.0 * corner);
         libm::fmin(libm::fmax(1.1 * max, 1.0), MAX_SPEED)
     }
 }
 
-/// Maximum real part of the intersection of two discs; if they are disjoint, that of the second's point nearest to
-/// the first.
-fn most_real(own: f64, centre: (f64, f64), radius: f64) -> f64 {
-    let (re, im) = centre;
+/// Maximum real part of the intersection of two discs, or of the second's point nearest to the first.
+fn max_real_part(own: f64, center: (f64, f64), radius: f64) -> f64 {
+    let (re, im) = center;
     let distance = libm::sqrt(re * re + im * im);
-    let far = |x: f64, y: f64| libm::sqrt(x * x + y * y);
-    if far(own - re, im) <= radius {
+    let length = |x: f64, y: f64| libm::sqrt(x * x + y * y);
+    if length(own - re, im) <= radius {
         return own;
     }
-    if far(re + radius, im) <= own {
+    if length(re + radius, im) <= own {
         return re + radius;
     }
     if distance > own + radius {
         return re * (1.0 - radius / distance);
     }
-    // Both circles' crossing whose real part is the greater.
+    // The intersection of both circles with the larger real part.
     let along = (own * own - radius * radius + distance * distance) / (2.0 * distance);
     let across = libm::sqrt(libm::fmax(own * own - along * along, 0.0));
     (along * re + across * libm::fabs(im)) / distance
 }
 
 /// The maximum rate up to which `holds`; 0 for none, `None` for all.
-fn greatest(holds: impl Fn(f64) -> bool) -> Option<f64> {
+fn highest_rate(holds: impl Fn(f64) -> bool) -> Option<f64> {
     if holds(MAX_SPEED) {
         return None;
     }

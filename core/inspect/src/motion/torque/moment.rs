@@ -1,3 +1,5 @@
+//! One time of a plan.
+
 use serde::Serialize;
 
 /// Needed and available torque at one time of a plan.
@@ -11,6 +13,7 @@ pub struct Moment {
 }
 
 impl Moment {
+    /// Available less needed torque; negative for a shortage.
     pub fn margin_mn_m(&self) -> f64 {
         self.available_mn_m - libm::fabs(self.needed_mn_m)
     }

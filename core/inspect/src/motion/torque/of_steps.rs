@@ -1,7 +1,7 @@
 //! Torque that steps without a plan require: segments, packets, recordings.
 //!
-//! Steps have no acceleration of their own. A rotor hardly follows what is faster than its natural period T, so
-//! positions, straight from step to step, are smoothed over T:
+//! Steps have no acceleration of their own. A rotor hardly follows changes faster than its natural period T, so
+//! positions, linear from step to step, are smoothed over T:
 //!
 //! ```text
 //! speed        = (x(t + h) - x(t - h))/(2*h)
@@ -10,9 +10,9 @@
 //! T = 2*pi*sqrt(J/(p*k*I))      rotor and load in the field of the regulated peak
 //! ```
 //!
-//! Both are piecewise linear between t_i - h, t_i and t_i + h of all steps, so the maximum acceleration is found
-//! exactly. With 16 microsteps a position error of one step requires at most 4 % of the motor's torque, whatever the
-//! load, so jitter makes no shortage.
+//! Both are linear between the times t_i - h, t_i and t_i + h of all steps, so the maximum acceleration is exact. With 16
+//! microsteps a position error of one step requires at most 4 % of the motor's torque for any load, so jitter causes no
+//! shortage.
 
 use super::{Demand, Machine, Moment, Shortages};
 use alloc::vec::Vec;
@@ -24,8 +24,8 @@ impl Demand {
         let mut found = Shortages::new(0.0, jump(machine, steps, clock_hz));
         let mut last: Option<Moment> = None;
         moments(machine, steps, clock_hz, &mut |moment| {
-            found.demand.greatest_rate = libm::fmax(found.demand.greatest_rate, moment.rate);
-            // The margin is straight between moments.
+            found.demand.max_rate = libm::fmax(found.demand.max_rate, moment.rate);
+            // The margin is linear between moments.
             found.add(moment, moment.at_s, 1.0, || match last {
                 Some(last) => {
                     let before = last.margin_mn_m();
@@ -49,16 +49,16 @@ pub fn steps_needed_over_rate(
 ) -> Vec<f64> {
     let mut needed = alloc::vec![f64::NAN; bins];
     moments(machine, steps, clock_hz, &mut |moment| {
-        let moves = moment.rate > 0.0 || moment.needed_mn_m != 0.0;
+        let is_moving = moment.rate > 0.0 || moment.needed_mn_m != 0.0;
         let bin = (moment.rate / max_rate * bins as f64) as usize;
-        if let Some(max) = needed.get_mut(bin).filter(|_| moves) {
+        if let Some(max) = needed.get_mut(bin).filter(|_| is_moving) {
             *max = libm::fmax(*max, libm::fabs(moment.needed_mn_m));
         }
     });
     needed
 }
 
-/// Every instant at which the acceleration bends, in order.
+/// Calls `each` at every time at which the slope of the acceleration changes, in order.
 fn moments(machine: &Machine, steps: &[Step], clock_hz: u32, each: &mut impl FnMut(Moment)) {
     let hz = f64::from(clock_hz);
     let half_s = machine.natural_period_s() / 2.0;
@@ -71,7 +71,7 @@ fn moments(machine: &Machine, steps: &[Step], clock_hz: u32, each: &mut impl FnM
         for (list, index) in next.iter().enumerate() {
             let ahead_s = positions.get(list).map_or(0.0, |(ahead_s, _)| *ahead_s);
             if let Some(at_s) = seconds(*index).map(|at_s| at_s - ahead_s)
-                && first.is_none_or(|(_, least)| at_s < least)
+                && first.is_none_or(|(_, min)| at_s < min)
             {
                 first = Some((list, at_s));
             }
@@ -118,28 +118,30 @@ impl Position<'_> {
 
 /// The maximum rate next to a reversal, a stop, or an end.
 ///
-/// It is that of the next step or of the next half full step, whichever is lower, because less hardly moves the rotor. A
-/// stop is longer than a natural period, or than half a full step and four steps take at that rate.
+/// It is the rate of the next step or of the next half full step, whichever is lower, because shorter travel hardly moves
+/// the rotor. A stop is an interval longer than the natural period, or than half a full step (at least four steps) takes
+/// at that rate.
 fn jump(machine: &Machine, steps: &[Step], clock_hz: u32) -> f64 {
-    let swing_s = machine.natural_period_s();
+    let period_s = machine.natural_period_s();
     let half = machine.microsteps_of_half_a_step();
-    let rest = half.max(4) as f64;
-    let mut greatest = 0.0;
+    let stop_steps = half.max(4) as f64;
+    let mut max_jump = 0.0;
     for at in 0..steps.len() {
         let side = |next, end| Side::of(steps, at, [next, end], f64::from(clock_hz));
         let before = side(at.checked_sub(1), at.checked_sub(half));
         let after = side(at.checked_add(1), at.checked_add(half));
-        let turns = before.direction * after.direction < 0.0;
-        for (leaves, takes) in [(&before, &after), (&after, &before)] {
-            let rests = leaves.interval_s > swing_s || leaves.interval_s * takes.rate > rest;
-            if turns || rests {
-                greatest = libm::fmax(greatest, takes.rate);
+        let is_reversal = before.direction * after.direction < 0.0;
+        for (idle, moving) in [(&before, &after), (&after, &before)] {
+            let is_stop = idle.interval_s > period_s || idle.interval_s * moving.rate > stop_steps;
+            if is_reversal || is_stop {
+                max_jump = libm::fmax(max_jump, moving.rate);
             }
         }
     }
-    greatest
+    max_jump
 }
 
+/// The steps before or after a step.
 struct Side {
     /// To the next step; infinite where there is none.
     interval_s: f64,
@@ -157,19 +159,19 @@ impl Side {
                 if to.cycle < from.cycle { -travel } else { travel },
             ))
         };
-        let [next, all] = ends.map(span);
+        let [next, half_step] = ends.map(span);
         let rate = |span: Option<(f64, f64)>| {
             span.map_or(0.0, |(time_s, travel)| libm::fabs(travel) / libm::fmax(time_s, 1.0 / hz))
         };
         let (interval_s, direction) = next.unwrap_or((f64::INFINITY, 0.0));
-        Self { interval_s, direction, rate: libm::fmin(rate(next), rate(all)) }
+        Self { interval_s, direction, rate: libm::fmin(rate(next), rate(half_step)) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     #[test]
-    fn recorded_steps_need_torque() {
+    fn recorded_steps_have_a_demand() {
         use crate::motion::torque::{Demand, Machine};
         use stepscope_motion::{motor::Motor, moves::Axis};
         use stepscope_peripheral::trace::Step;

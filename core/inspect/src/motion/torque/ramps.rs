@@ -6,6 +6,7 @@ use crate::motion::torque::Machine;
 use serde::Serialize;
 use stepscope_motion::{Curve, Profile, bisection::border, curves::Cosine};
 
+/// Ramps to try, and samples per ramp.
 const TRIED: u32 = 512;
 const SAMPLES: u32 = 128;
 
@@ -13,15 +14,17 @@ const SAMPLES: u32 = 128;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ramps {
     /// f_s, the motor's maximum rate in steps/s; `None` without a limit.
-    pub greatest_rate: Option<f64>,
+    #[serde(rename = "greatest_rate")]
+    pub max_rate: Option<f64>,
     /// T - n/f_s: the longest ramp below that rate; may exceed [`Self::room_s`].
     pub longest_s: Option<f64>,
     /// Even without ramps the rate exceeds f_s.
     pub too_fast: bool,
+    /// The longest ramp of the move: half of its duration.
     pub room_s: f64,
     /// The shortest and longest ramp above 0 with enough torque and within the stated rate.
     pub enough_s: Option<(f64, f64)>,
-    /// Otherwise those with enough torque above the stated rate.
+    /// If there is none: ramps with enough torque, but above the stated rate.
     pub too_fast_s: Option<(f64, f64)>,
     /// Torque and rate suffice without ramps, except for the jump.
     pub without_ramps: bool,
@@ -51,16 +54,16 @@ impl Ramps {
         of: impl Fn(f64) -> C,
     ) -> Self {
         let room_s = curve.duration_s() / 2.0;
-        let greatest_rate = machine.greatest_rate();
-        let longest_s = greatest_rate.and_then(longest);
+        let max_rate = machine.max_rate();
+        let longest_s = max_rate.and_then(longest);
         let torque = |ramp_s: f64| suffices(machine, &of(ramp_s), ramp_s);
         let enough = |ramp_s: f64| keeps_rate(machine, &of(ramp_s)) && torque(ramp_s);
-        let too_fast = greatest_rate.is_some() && longest_s.is_none();
+        let too_fast = max_rate.is_some() && longest_s.is_none();
         let longest_tried_s =
             if too_fast { 0.0 } else { longest_s.map_or(room_s, |max| libm::fmin(max, room_s)) };
         let enough_s = widest(longest_tried_s, enough);
         Self {
-            greatest_rate,
+            max_rate,
             longest_s,
             too_fast,
             room_s,

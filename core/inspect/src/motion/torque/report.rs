@@ -19,7 +19,8 @@ pub struct TorqueReport {
     pub working_rate: Option<f64>,
     pub over_working_rate: Option<f64>,
     pub jump: f64,
-    pub least: Option<Moment>,
+    #[serde(rename = "least")]
+    pub min_margin: Option<Moment>,
     pub total: u64,
     pub shortages: Vec<Shortage>,
     /// For steps without a plan: [`Machine::natural_period_s`].
@@ -29,6 +30,7 @@ pub struct TorqueReport {
     pub curve: TorqueCurve,
 }
 
+/// The ramps of move `index`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MoveRamps {
     pub index: usize,
@@ -37,6 +39,7 @@ pub struct MoveRamps {
     pub ramps: Ramps,
 }
 
+/// Torque over the rate: available, and needed (NaN for unused rates).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TorqueCurve {
     pub rate: Vec<f64>,
@@ -57,9 +60,10 @@ impl TorqueReport {
         Some(Self { ramps: ramps.collect(), ..found })
     }
 
+    /// The study of steps without a plan.
     pub fn of_steps(machine: &Machine, steps: &[Step], clock_hz: u32) -> Self {
         let demand = Demand::of_steps(machine, steps, clock_hz);
-        let max_rate = machine.shown_rate(demand.greatest_rate);
+        let max_rate = machine.shown_rate(demand.max_rate);
         let needed = |max_rate, bins| steps_needed_over_rate(machine, steps, clock_hz, max_rate, bins);
         let curve = TorqueCurve::with(machine, max_rate, needed);
         Self { window_s: Some(machine.natural_period_s()), ..Self::with(machine, demand, curve) }
@@ -74,7 +78,7 @@ impl TorqueReport {
             working_rate: machine.working_rate(),
             over_working_rate: demand.over_working_rate,
             jump: demand.jump,
-            least: demand.least,
+            min_margin: demand.min_margin,
             total: demand.total,
             window_s: None,
             ramps: Vec::new(),
@@ -89,6 +93,7 @@ impl TorqueCurve {
         Self::up_to(machine, Some(plan), machine.shown_rate(plan.peaks().speed))
     }
 
+    /// The curve up to `max_rate`; without a plan, `needed` is empty.
     pub fn up_to(machine: &Machine, plan: Option<&AxisPlan>, max_rate: f64) -> Self {
         Self::with(machine, max_rate, |max_rate, bins| {
             plan.map_or_else(Vec::new, |plan| needed_over_rate(machine, plan, max_rate, bins))

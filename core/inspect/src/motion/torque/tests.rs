@@ -21,7 +21,7 @@ fn close(found: f64, expected: f64, relative: f64) {
     assert!((found - expected).abs() <= relative * expected.abs(), "{found} is not {expected}");
 }
 
-/// The document's move: one turn of 3200 steps in 0.4 s with ramps of 0.2 s.
+/// The move of Song 2021: one turn of 3200 steps in 0.4 s with ramps of 0.2 s.
 const TURN: &str = r#"{"cosine":{}}"#;
 
 #[test]
@@ -32,7 +32,7 @@ fn without_a_motor_there_is_no_report() {
 }
 
 #[test]
-fn up_to_the_corner_there_is_the_regulated_currents_torque() {
+fn up_to_the_corner_torque_is_that_of_the_regulated_current() {
     let motor = machine("{}");
     // One phase at its peak has 1/sqrt(2) of what both have.
     close(motor.available_mn_m(0.0), 400.0 / 2.0_f64.sqrt(), 1e-12);
@@ -44,7 +44,7 @@ fn up_to_the_corner_there_is_the_regulated_currents_torque() {
     close(corner, speed * 3200.0 / (2.0 * PI), 1e-12);
     close(motor.available_mn_m(corner * 0.999_999), motor.available_mn_m(0.0), 1e-12);
     assert!(motor.available_mn_m(corner * 1.001) < motor.available_mn_m(0.0));
-    // Both phases' peak at sqrt(2) of the rated current has the whole holding torque.
+    // At a peak of sqrt(2) times the rated current the torque is the holding torque.
     let peak = machine(r#"{"peak_current_a":2.121320343559643}"#);
     close(peak.available_mn_m(0.0), 400.0, 1e-12);
     // 2 V through 1.6 ohm are less than 1.5 A.
@@ -54,7 +54,7 @@ fn up_to_the_corner_there_is_the_regulated_currents_torque() {
 }
 
 #[test]
-fn far_above_the_corner_it_is_the_textbooks_pull_out_torque() {
+fn far_above_the_corner_torque_equals_the_textbook_formula() {
     let motor = machine("{}");
     for rate in [100_000.0, 250_000.0, 1_000_000.0] {
         let speed: f64 = rate * 2.0 * PI / 3200.0;
@@ -66,7 +66,7 @@ fn far_above_the_corner_it_is_the_textbooks_pull_out_torque() {
 
 /// An independent search: all currents within the limit, by size and angle, whose voltage the supply has.
 #[test]
-fn no_allowed_current_has_more_torque_and_one_has_as_much() {
+fn available_torque_equals_a_search_over_all_currents() {
     for json in [
         "{}",
         r#"{"supply_v":0.1}"#,
@@ -82,7 +82,7 @@ fn no_allowed_current_has_more_torque_and_one_has_as_much() {
         for rate in (0..60).map(|index| 2500.0 * f64::from(index)) {
             let speed = rate * 2.0 * PI / 3200.0;
             let (r, x) = (motor.resistance_ohm, 50.0 * speed * motor.inductance_mh / 1000.0);
-            let mut most = f64::NEG_INFINITY;
+            let mut max = f64::NEG_INFINITY;
             for size in 0..=200 {
                 for angle in -400..=400 {
                     let current = motor.rated_current_a * f64::from(size) / 200.0;
@@ -92,15 +92,15 @@ fn no_allowed_current_has_more_torque_and_one_has_as_much() {
                     let (re, im) = (current * cosine, current * sine);
                     let (v_re, v_im) = (constant * speed + r * re - x * im, r * im + x * re);
                     if v_re * v_re + v_im * v_im <= motor.supply_v * motor.supply_v {
-                        most = most.max(1000.0 * constant * re);
+                        max = max.max(1000.0 * constant * re);
                     }
                 }
             }
             let found = model.available_mn_m(rate);
-            assert!(found >= most - 1e-9, "{json} at {rate}: {found} under {most}");
+            assert!(found >= max - 1e-9, "{json} at {rate}: {found} under {max}");
             // Where no current is allowed, there is no torque to drive with.
-            let above = if most.is_finite() { most + 4.0 } else { 0.0 };
-            assert!(found <= above, "{json} at {rate}: {found} over {most}");
+            let above = if max.is_finite() { max + 4.0 } else { 0.0 };
+            assert!(found <= above, "{json} at {rate}: {found} over {max}");
             // It falls until there is none.
             assert!(found <= last.max(0.0) + 1e-9, "{json}: more at {rate} than below");
             last = found;
@@ -131,18 +131,18 @@ fn needed_is_inertia_times_acceleration_and_the_load_opposes_the_motion() {
 fn song_2021s_turn_leaves_its_motor_nearly_all_of_its_torque() {
     let found = demand("{}", TURN);
     assert!(found.is_met() && found.shortages.is_empty() && found.jump == 0.0, "{found:?}");
-    // 45 g*cm^2 at 16000*pi/0.4 steps/s^2, greatest in the middle of the ramp; no load is given.
-    let least = found.least.unwrap();
+    // 45 g*cm^2 at 16000*pi/0.4 steps/s^2, maximum in the middle of the ramp; there is no load.
+    let min = found.min_margin.unwrap();
     let needed = 45e-4 * 16_000.0 * PI / 0.4 * 2.0 * PI / 3200.0;
-    close(least.needed_mn_m, needed, 1e-9);
-    close(least.at_s, 0.1, 1e-6);
-    close(least.margin_mn_m(), 400.0 / 2.0_f64.sqrt() - needed, 1e-9);
+    close(min.needed_mn_m, needed, 1e-9);
+    close(min.at_s, 0.1, 1e-6);
+    close(min.margin_mn_m(), 400.0 / 2.0_f64.sqrt() - needed, 1e-9);
 }
 
 /// Twenty times as much inertia and a load: short around the middle of the first ramp, where the rate is under
-/// the corner, so the stretch follows from an arc sine.
+/// the corner, so its times follow from an arc sine.
 #[test]
-fn a_shortage_has_its_times_its_worst_and_its_rate() {
+fn a_shortage_reports_times_and_worst_moment() {
     let found = demand(r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}"#, TURN);
     assert_eq!((found.total, found.shortages.len(), found.is_met()), (1, 1, false), "{found:?}");
     let shortage = found.shortages[0];
@@ -152,8 +152,8 @@ fn a_shortage_has_its_times_its_worst_and_its_rate() {
     close(shortage.to_s, 0.2 * (PI - phase) / PI, 1e-9);
     close(shortage.worst.needed_mn_m, 100.0 + greatest, 1e-9);
     close(shortage.worst.rate, 8000.0, 1e-4);
-    assert_eq!((found.least, shortage.times), (Some(shortage.worst), 1.0));
-    // Slowing down needs 148 mN*m the other way, less than there is; to the left all is the same.
+    assert_eq!((found.min_margin, shortage.times), (Some(shortage.worst), 1.0));
+    // Deceleration needs 148 mN*m, less than available; a move to the left is equal.
     let left = r#"{"cosine":{"distance":{"steps":-3200}}}"#;
     assert_eq!(demand(r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}"#, left), found);
     // Without a load both ramps are alike.
@@ -165,18 +165,18 @@ fn a_shortage_has_its_times_its_worst_and_its_rate() {
 }
 
 #[test]
-fn a_plateau_above_what_the_load_allows_is_short_all_along() {
+fn a_plateau_above_the_torque_rate_is_one_shortage() {
     let motor = r#"{"load_torque_mn_m":200,"supply_v":12}"#;
-    let most = machine(motor).torque_rate().unwrap();
-    close(machine(motor).available_mn_m(most), 200.0, 1e-9);
-    let moves = format!(r#"{{"constant":{{"speed":{{"steps_s":{}}}}}}},{{"dwell":{{}}}}"#, most * 1.01);
+    let max = machine(motor).torque_rate().unwrap();
+    close(machine(motor).available_mn_m(max), 200.0, 1e-9);
+    let moves = format!(r#"{{"constant":{{"speed":{{"steps_s":{}}}}}}},{{"dwell":{{}}}}"#, max * 1.01);
     let found = demand(motor, &moves);
     assert_eq!(found.total, 1, "{found:?}");
     let shortage = found.shortages[0];
     assert_eq!(shortage.from_s, 0.0);
-    close(shortage.to_s, 1000.0 / (most * 1.01), 1e-9);
-    close(found.jump, most * 1.01, 1e-12);
-    let moves = format!(r#"{{"constant":{{"speed":{{"steps_s":{}}}}}}}"#, most * 0.99);
+    close(shortage.to_s, 1000.0 / (max * 1.01), 1e-9);
+    close(found.jump, max * 1.01, 1e-12);
+    let moves = format!(r#"{{"constant":{{"speed":{{"steps_s":{}}}}}}}"#, max * 0.99);
     assert!(demand(motor, &moves).is_met());
 }
 
@@ -191,18 +191,20 @@ fn repeated_periods_are_one_shortage() {
 
 /// Without a load, too, a motor that the supply leaves no driving current is short of torque.
 #[test]
-fn where_every_current_brakes_no_load_is_light_enough() {
+fn a_motor_without_driving_current_cannot_follow() {
     let weak = r#"{"supply_v":0.1}"#;
     // V/|Z| = k*w*R/|Z|^2, so w^2*(k^2*R^2 - V^2*p^2*L^2) = V^2*R^2.
     let (k, r, pl) = (0.4 / (2.0_f64.sqrt() * 1.5), 1.6, 50.0 * 4.3e-3);
     let speed = 0.1 * r / (k * k * r * r - 0.01 * pl * pl).sqrt();
-    let most = machine(weak).torque_rate().unwrap();
-    close(most, speed * 3200.0 / (2.0 * PI), 1e-9);
-    assert!(machine(weak).available_mn_m(most * 1.001) < 0.0);
+    let max = machine(weak).torque_rate().unwrap();
+    close(max, speed * 3200.0 / (2.0 * PI), 1e-9);
+    assert!(machine(weak).available_mn_m(max * 1.001) < 0.0);
     let constant = r#"{"constant":{"speed":{"steps_s":100000}}}"#;
     let found = demand(weak, constant);
     assert_eq!(found.total, 1, "{found:?}");
-    assert!(found.shortages[0].worst.margin_mn_m() < 0.0 && found.least == Some(found.shortages[0].worst));
+    assert!(
+        found.shortages[0].worst.margin_mn_m() < 0.0 && found.min_margin == Some(found.shortages[0].worst)
+    );
     assert!(machine(weak).curve(100_000.0, 3).last().unwrap().1 < 0.0);
     // At far less than there is, all is well.
     assert!(demand(weak, r#"{"constant":{"speed":{"steps_s":200}}}"#).is_met());
@@ -220,9 +222,9 @@ fn a_working_rate_limits_in_addition_to_torque() {
     assert!(!found.is_met());
     assert!(demand(r#"{"working_rate_hz":16000}"#, TURN).is_met());
     // Without a load an ideal motor has some torque at every rate.
-    assert_eq!(machine("{}").greatest_rate(), None);
-    assert_eq!(machine(r#"{"working_rate_hz":19200}"#).greatest_rate(), Some(19_200.0));
-    assert_eq!(machine(r#"{"load_torque_mn_m":300}"#).greatest_rate(), Some(0.0));
+    assert_eq!(machine("{}").max_rate(), None);
+    assert_eq!(machine(r#"{"working_rate_hz":19200}"#).max_rate(), Some(19_200.0));
+    assert_eq!(machine(r#"{"load_torque_mn_m":300}"#).max_rate(), Some(0.0));
 }
 
 /// f_s = 19200 gives 0.2333 s, of which the move of 0.4 s has room for 0.2 s.
@@ -233,14 +235,14 @@ fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
     };
     let found = ramps(r#"{"working_rate_hz":19200}"#, 3200, 0.4);
     close(found.longest_s.unwrap(), 0.233_333_333, 1e-8);
-    assert_eq!((found.greatest_rate, found.room_s, found.too_fast), (Some(19_200.0), 0.2, false));
+    assert_eq!((found.max_rate, found.room_s, found.too_fast), (Some(19_200.0), 0.2, false));
     let (shortest, longest) = found.enough_s.unwrap();
     assert_eq!(longest, 0.2);
-    // The shortest: with J = 45 g*cm^2 the torque of 282.8 mN*m is asked for by n*pi/(2*t_s*(T - t_s)).
+    // The shortest: with J = 45 g*cm^2 the torque of 282.8 mN*m is demand for by n*pi/(2*t_s*(T - t_s)).
     let acceleration = 400.0 / 2.0_f64.sqrt() / 45e-4 / (2.0 * PI / 3200.0);
     let peak = |ramp_s: f64| Cosine::new(3200, 0.4, ramp_s).peaks().acceleration;
     close(peak(shortest), acceleration, 1e-3);
-    // 6400 steps in 0.4 s: the document's longest ramp is 0.0667 s, so without a plateau it is too fast.
+    // 6400 steps in 0.4 s: the longest ramp of the paper is 0.0667 s, so without a plateau it is too fast.
     let found = ramps(r#"{"working_rate_hz":19200}"#, 6400, 0.4);
     close(found.longest_s.unwrap(), 0.066_666_667, 1e-7);
     close(found.enough_s.unwrap().1, 0.066_666_667, 1e-7);
@@ -254,7 +256,7 @@ fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
 fn without_a_suitable_ramp_the_limit_is_reported() {
     let ramps =
         |motor: &str| Ramps::of(&machine(motor), &Profile::Cosine(Cosine::new(3200, 0.4, 0.0))).unwrap();
-    // 8000 steps/s are the least that the move can do, and only without ramps.
+    // 8000 steps/s is the minimum rate of the move, without ramps.
     let found = ramps(r#"{"working_rate_hz":8000}"#);
     assert_eq!((found.longest_s, found.enough_s, found.without_ramps), (Some(0.0), None, true));
     let free = ramps("{}");
@@ -275,7 +277,7 @@ fn without_a_suitable_ramp_the_limit_is_reported() {
 }
 
 #[test]
-fn of_ramps_that_suffice_both_ends_are_found() {
+fn both_ends_of_the_sufficient_ramps_are_found() {
     let motor = r#"{"load_inertia_g_cm2":300,"load_torque_mn_m":180,"supply_v":13}"#;
     // The cosine, and two other shapes with its front.
     for (kind, shape) in
@@ -324,13 +326,13 @@ fn only_a_move_with_too_little_torque_has_a_warning() {
     assert_eq!(
         warn(1.0, 1.4, 16_000.0).as_deref(),
         Some(
-            "too little torque: 346.7 mN*m needed of 282.8 at 1.1000 s and 8\u{202f}000 steps/s; give more time, gentler ramps, less load or a higher supply voltage"
+            "too little torque: 346.7 mN*m needed of 282.8 at 1.1000 s and 8\u{202f}000 steps/s; use more time, longer ramps, less load or a higher supply voltage"
         )
     );
     assert_eq!(
         warn(0.0, 1.0, 30_001.0).as_deref(),
         Some(
-            "30\u{202f}001 steps/s are above the motor's working rate of 30\u{202f}000; give more time, or shorter ramps"
+            "30\u{202f}001 steps/s exceed the motor's working rate of 30\u{202f}000; use more time or shorter ramps"
         )
     );
 }
@@ -349,7 +351,7 @@ fn steps_of(motor: &str, moves: &str) -> (Machine, Vec<stepscope_peripheral::tra
 #[test]
 fn the_steps_of_a_plan_need_the_torque_of_the_plan() {
     let rows = [
-        // The bare rotor, a load of inertia, one of friction as well, and there and back with a rest between.
+        // The bare rotor, a load of inertia, one of friction as well, and a move there and back with a dwell.
         ("{}", TURN, 0.02),
         (r#"{"load_inertia_g_cm2":4955}"#, TURN, 0.02),
         (r#"{"load_inertia_g_cm2":955,"load_torque_mn_m":100}"#, r#"{"cosine":{"ramp_s":0.05}}"#, 0.02),
@@ -359,21 +361,21 @@ fn the_steps_of_a_plan_need_the_torque_of_the_plan() {
         let (machine, steps) = steps_of(motor, moves);
         let (plan, found) = (demand(motor, moves), Demand::of_steps(&machine, &steps, 16_000_000));
         assert!(plan.is_met() && found.is_met(), "{motor} {moves} {found:?}");
-        let [by_plan, by_steps] = [&plan, &found].map(|asked| asked.least.unwrap().needed_mn_m.abs());
+        let [by_plan, by_steps] = [&plan, &found].map(|demand| demand.min_margin.unwrap().needed_mn_m.abs());
         // In parts of what the motor has.
         assert!((by_plan - by_steps).abs() < within * 282.8, "{motor}: {by_plan} {by_steps}");
-        close(found.greatest_rate, plan.greatest_rate, 0.02);
+        close(found.max_rate, plan.max_rate, 0.02);
     }
 }
 
 #[test]
-fn a_shortage_of_steps_is_where_that_of_their_plan_is() {
+fn steps_and_their_plan_have_the_same_shortage() {
     let motor = r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}"#;
     let (machine, steps) = steps_of(motor, TURN);
     let (plan, found) = (demand(motor, TURN), Demand::of_steps(&machine, &steps, 16_000_000));
     assert_eq!((plan.total, found.total), (1, 1));
     let start_s = steps[0].cycle as f64 / 16e6;
-    let [by_plan, by_steps] = [&plan, &found].map(|asked| asked.shortages[0]);
+    let [by_plan, by_steps] = [&plan, &found].map(|demand| demand.shortages[0]);
     for (planned, stepped) in [(by_plan.from_s, by_steps.from_s), (by_plan.to_s, by_steps.to_s)] {
         // The first step is due a little after the plan's start.
         assert!((stepped - start_s - planned).abs() < 0.02, "{planned} {stepped}");
@@ -382,8 +384,8 @@ fn a_shortage_of_steps_is_where_that_of_their_plan_is() {
     let report = TorqueReport::of_steps(&machine, &steps, 16_000_000);
     assert_eq!((report.total, report.ramps.len()), (1, 0));
     close(report.window_s.unwrap(), machine.natural_period_s(), 1e-12);
-    let most = report.curve.needed.iter().copied().fold(0.0, f64::max);
-    close(most, by_steps.worst.needed_mn_m, 0.01);
+    let max = report.curve.needed.iter().copied().fold(0.0, f64::max);
+    close(max, by_steps.worst.needed_mn_m, 0.01);
 }
 
 #[test]
@@ -396,7 +398,7 @@ fn jitter_needs_little_torque_and_jumps_are_reported() {
     // 16 000 steps/s whose every second step comes half an interval late.
     let even = Demand::of_steps(&machine, &steps(1000, |_| 0), 16_000_000);
     let uneven = Demand::of_steps(&machine, &steps(1000, |k| k % 2 * 500), 16_000_000);
-    let [even, uneven_mn_m] = [&even, &uneven].map(|asked| asked.least.unwrap().needed_mn_m.abs());
+    let [even, uneven_mn_m] = [&even, &uneven].map(|demand| demand.min_margin.unwrap().needed_mn_m.abs());
     assert!((uneven_mn_m - even).abs() < 0.04 * 282.8, "{even} {uneven_mn_m}");
     assert_eq!(Demand::of_steps(&machine, &steps(1000, |_| 0), 16_000_000).jump, 16_000.0);
     // Of steps that are each one by itself none takes up more than its own rate.
@@ -416,7 +418,7 @@ fn jitter_needs_little_torque_and_jumps_are_reported() {
     assert!((1900.0..6000.0).contains(&bursts.jump), "{}", bursts.jump);
     for few in [0, 1] {
         let few = Demand::of_steps(&machine, &steps(1000, |_| 0)[..few], 16_000_000);
-        assert!(few.is_met() && few.jump == 0.0 && few.greatest_rate == 0.0, "{few:?}");
+        assert!(few.is_met() && few.jump == 0.0 && few.max_rate == 0.0, "{few:?}");
     }
 }
 
@@ -431,16 +433,16 @@ fn a_working_rate_and_simultaneous_steps_are_checked() {
         .collect();
     let found = Demand::of_steps(&machine, &all, 16_000_000);
     assert!(found.over_working_rate.is_some_and(|rate| (3000.0..5000.0).contains(&rate)), "{found:?}");
-    assert!(found.least.is_some_and(|least| least.needed_mn_m.is_finite()));
+    assert!(found.min_margin.is_some_and(|min| min.needed_mn_m.is_finite()));
     // Without any inertia only the load is left.
     let (light, steps) = steps_of(r#"{"rotor_inertia_g_cm2":0,"load_torque_mn_m":10}"#, TURN);
     let found = Demand::of_steps(&light, &steps, 16_000_000);
     assert!(found.is_met());
-    assert_eq!(found.least.map(|least| least.needed_mn_m), Some(10.0));
+    assert_eq!(found.min_margin.map(|min| min.needed_mn_m), Some(10.0));
 }
 
 #[test]
-fn the_natural_period_is_the_plants_and_a_channel_has_the_plants_motor() {
+fn a_channel_without_axis_has_the_motor_of_the_plant() {
     use stepscope_plant::{parameters::MotorModel, stability::Natural};
     let scenario = |text: &str| stepscope_scenario::Scenario::from_json(text).unwrap();
     let listed = scenario(
@@ -449,7 +451,7 @@ fn the_natural_period_is_the_plants_and_a_channel_has_the_plants_motor() {
     let of = |channel| Machine::of_channel(&listed, 0, channel).unwrap();
     close(1.0 / of(1).natural_period_s(), Natural::of(&MotorModel::default()).frequency_hz, 1e-9);
     assert_eq!((of(0).working_rate(), of(1).working_rate()), (Some(500.0), None));
-    // The last entry holds for the rest; four microsteps reach a rate that sixteen need four times of.
+    // The last entry is used for other channels; a rate with 4 microsteps is 1/4 of that with 16.
     assert_eq!(of(1), of(2));
     close(of(0).corner_rate().unwrap(), 4.0 * of(1).corner_rate().unwrap(), 1e-9);
     assert_eq!(Machine::of_channel(&scenario(r#"{"source":{"segments":{}}}"#), 0, 0), None);
@@ -463,20 +465,4 @@ fn the_natural_period_is_the_plants_and_a_channel_has_the_plants_motor() {
         of(1).corner_rate().unwrap(),
         1e-9,
     );
-}
-
-#[test]
-fn a_motor_follows_the_default_motion_or_not() {
-    use crate::motion::torque::{Demand, Machine};
-    use stepscope_motion::{motor::Motor, moves::Axis, plan_axis};
-
-    // The default turn, in 0.4 s, with the default motor.
-    let axis = Axis { motor: Some(Motor::default()), ..Axis::default() };
-    let machine = Machine::of(&axis).expect("it has a motor");
-    let demand = Demand::of(&machine, &plan_axis(&axis, "x").expect("it can be planned"));
-    assert!(demand.is_met());
-    // Ten times the load, and it is not.
-    let motor = Motor { load_torque_mn_m: 4000.0, ..Motor::default() };
-    let machine = Machine::of(&Axis { motor: Some(motor), ..axis.clone() }).expect("it has a motor");
-    assert!(!Demand::of(&machine, &plan_axis(&axis, "x").expect("it can be planned")).is_met());
 }

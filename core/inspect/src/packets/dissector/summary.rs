@@ -1,24 +1,20 @@
-//! A packet, frame or reply in one line.
+//! One-line summaries of packets, frames and replies.
 
-use super::{Check, Content, Head, Reading, last_frame, position_to_text};
+use super::{Content, CrcCheck, Dissector, FrameHead, last_frame, position_to_text};
 use crate::packets::log::RowOutcome;
 use alloc::string::String;
 use core::fmt::Write as _;
-use stepscope_peripheral::{
-    protocol::{Kind, Reply},
-    wire::{
-        frame::{Frame, Ticks},
-        packet::{ALL, ChannelCommand},
-    },
-};
+use stepscope_peripheral::protocol::{Kind, Reply};
+use stepscope_peripheral::wire::frame::{Frame, Ticks};
+use stepscope_peripheral::wire::packet::{ALL, ChannelCommand};
 
-impl Reading<'_> {
-    /// Adds address and meaning of a row.
+impl Dissector<'_> {
+    /// Appends the address and the summary of a row to `text`.
     pub fn summary(&self, bytes: &[u8], outcome: RowOutcome, text: &mut String) {
         match outcome {
             RowOutcome::Packet(_) => match bytes.split_first() {
                 Some((&address, commands)) if self.addressed => {
-                    to(address, text);
+                    write_address(address, text);
                     text.push_str(", ");
                     write_steps(commands.iter().copied(), text);
                 }
@@ -26,19 +22,19 @@ impl Reading<'_> {
             },
             RowOutcome::Reply(reply) => {
                 let _ = write!(text, "from {}: {reply}", reply.address);
-                // The trace stores counters as bytes only.
+                // The event has no position counters; they are in the bytes.
                 if reply.result == Ok(Kind::Positions) {
                     let content = Content::of(bytes, last_frame(bytes));
-                    if let [address, kind, body @ ..] = content.without(content.check()) {
+                    if let [address, kind, body @ ..] = content.without_crc(content.crc()) {
                         write_positions(Frame { address: *address, kind: *kind, body }, text);
                     }
                 }
             }
             RowOutcome::Frame(_) => {
                 let content = Content::of(bytes, last_frame(bytes));
-                if let check @ Check::Compared { found, expected } = content.check()
+                if let crc @ CrcCheck::Compared { found, expected } = content.crc()
                     && found == expected
-                    && let [address, kind, body @ ..] = content.without(check)
+                    && let [address, kind, body @ ..] = content.without_crc(crc)
                 {
                     self.frame(Frame { address: *address, kind: *kind, body }, text);
                 }
@@ -48,7 +44,7 @@ impl Reading<'_> {
     }
 
     fn frame(&self, frame: Frame<'_>, text: &mut String) {
-        let head = Head { address: frame.address, kind: frame.kind };
+        let head = FrameHead { address: frame.address, kind: frame.kind };
         if head.is_reply() {
             let _ = write!(text, "from {}: ", frame.address);
             let _ = match Reply::parse(frame) {
@@ -58,7 +54,7 @@ impl Reading<'_> {
             write_positions(frame, text);
             return;
         }
-        to(frame.address, text);
+        write_address(frame.address, text);
         let Some(kind) = Kind::parse(frame.kind) else {
             let _ = write!(text, ": kind {:#04x}", frame.kind);
             return;
@@ -71,8 +67,8 @@ impl Reading<'_> {
         for (index, &byte) in ticks.commands().iter().enumerate() {
             totals[index % usize::from(channels.max(1))] += steps(byte);
         }
-        let many = if ticks.count() == 1 { "tick" } else { "ticks" };
-        let _ = write!(text, " seq {}, {} {many}, ", ticks.seq, ticks.count());
+        let unit = if ticks.count() == 1 { "tick" } else { "ticks" };
+        let _ = write!(text, " seq {}, {} {unit}, ", ticks.seq, ticks.count());
         write_totals(totals.into_iter().enumerate(), text);
     }
 }
@@ -84,7 +80,7 @@ fn write_positions(frame: Frame<'_>, text: &mut String) {
     }
 }
 
-fn to(address: u8, text: &mut String) {
+fn write_address(address: u8, text: &mut String) {
     let _ = if address == ALL { write!(text, "to all") } else { write!(text, "to {address}") };
 }
 
@@ -93,7 +89,7 @@ fn steps(byte: u8) -> i64 {
     if right { i64::from(steps) } else { -i64::from(steps) }
 }
 
-/// Adds the steps of one tick, one byte per channel, such as `ch0 +12, ch3 −1`.
+/// Appends the steps of one tick, one byte per channel, such as `ch0 +12, ch3 −1`.
 pub fn write_steps(commands: impl Iterator<Item = u8>, text: &mut String) {
     write_totals(commands.map(steps).enumerate(), text);
 }
@@ -101,9 +97,9 @@ pub fn write_steps(commands: impl Iterator<Item = u8>, text: &mut String) {
 fn write_totals(steps: impl Iterator<Item = (usize, i64)>, text: &mut String) {
     let before = text.len();
     for (channel, steps) in steps.filter(|(_, steps)| *steps != 0) {
-        let between = if text.len() == before { "" } else { ", " };
+        let separator = if text.len() == before { "" } else { ", " };
         let sign = if steps < 0 { '\u{2212}' } else { '+' };
-        let _ = write!(text, "{between}ch{channel} {sign}{}", steps.abs());
+        let _ = write!(text, "{separator}ch{channel} {sign}{}", steps.abs());
     }
     if text.len() == before {
         text.push_str("no steps");

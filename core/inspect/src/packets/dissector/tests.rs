@@ -1,4 +1,4 @@
-//! Fields against frames that the host and the controller write themselves.
+//! Fields of frames that the host and the controller encode.
 
 use super::*;
 use stepscope_peripheral::{
@@ -9,8 +9,8 @@ use stepscope_peripheral::{
 
 const FRAME: RowOutcome = RowOutcome::Frame(FrameOutcome::OtherAddress);
 
-fn read(protocol: Protocol, addressed: bool, bytes: &[u8], verdict: RowOutcome) -> Meaning {
-    let meaning = Reading { protocol, addressed, channels: &|_| 2 }.of(bytes, verdict);
+fn read(protocol: Protocol, addressed: bool, bytes: &[u8], outcome: RowOutcome) -> Dissection {
+    let meaning = Dissector { protocol, addressed, channels: &|_| 2 }.dissect(bytes, outcome);
     let mut end = 0;
     for field in &meaning.fields {
         assert!(end <= field.bytes.start && field.bytes.start < field.bytes.end, "{meaning:?}");
@@ -20,8 +20,8 @@ fn read(protocol: Protocol, addressed: bool, bytes: &[u8], verdict: RowOutcome) 
     meaning
 }
 
-/// `name bytes value`, a line each.
-fn told(meaning: &Meaning) -> Vec<String> {
+/// One line `name bytes value` per field.
+fn lines_of(meaning: &Dissection) -> Vec<String> {
     let line = |field: &Field| format!("{} {:?} {}", field.name, field.bytes, field.value);
     meaning.fields.iter().map(line).collect()
 }
@@ -30,19 +30,22 @@ fn told(meaning: &Meaning) -> Vec<String> {
 fn a_raw_packet_has_one_command_per_channel() {
     let packet = RowOutcome::Packet(PacketOutcome::Queued);
     let plain = read(Protocol::Raw, false, &[0x85, 0x05, 0x80], packet);
-    assert_eq!(told(&plain), ["ch0 0..1 +5", "ch1 1..2 \u{2212}5", "ch2 2..3 0, right"]);
-    assert_eq!(plain.check, Check::None);
+    assert_eq!(lines_of(&plain), ["ch0 0..1 +5", "ch1 1..2 \u{2212}5", "ch2 2..3 0, right"]);
+    assert_eq!(plain.crc, CrcCheck::None);
     let addressed = read(Protocol::Raw, true, &[255, 0], RowOutcome::Short);
-    assert_eq!(told(&addressed), ["address 0..1 255, all", "ch0 1..2 0, left"]);
-    assert_eq!(told(&read(Protocol::Raw, true, &[1, 2], RowOutcome::Ignored)), ["ignored 0..2 until a gap"]);
+    assert_eq!(lines_of(&addressed), ["address 0..1 255, all", "ch0 1..2 0, left"]);
+    assert_eq!(
+        lines_of(&read(Protocol::Raw, true, &[1, 2], RowOutcome::Ignored)),
+        ["ignored 0..2 until a gap"]
+    );
 }
 
 #[test]
-fn each_command_of_a_frame_has_its_byte_despite_cobs() {
+fn commands_of_a_frame_have_their_bytes_on_the_line() {
     let wire = emit(0, 1, &Ticks::emit(7, 2, &[0x81, 0, 0, 3]));
     let meaning = read(Protocol::Framed, false, &wire, FRAME);
     let check = u32::from_le_bytes(CHECK.checksum(&[0, 1, 7, 2, 0x81, 0, 0, 3]).to_le_bytes());
-    let lines = told(&meaning);
+    let lines = lines_of(&meaning);
     assert_eq!(
         lines[..9],
         [
@@ -57,9 +60,9 @@ fn each_command_of_a_frame_has_its_byte_despite_cobs() {
             "tick 1 ch1 8..9 \u{2212}3",
         ]
     );
-    assert_eq!(lines[9], format!("check 9..13 {check:08x}, holds"));
-    assert_eq!(lines[10], "end mark 13..14 00");
-    assert_eq!(meaning.check, Check::Compared { found: check, expected: check });
+    assert_eq!(lines[9], format!("CRC 9..13 {check:08x}, valid"));
+    assert_eq!(lines[10], "delimiter 13..14 00");
+    assert_eq!(meaning.crc, CrcCheck::Compared { found: check, expected: check });
 }
 
 #[test]
@@ -68,7 +71,7 @@ fn a_reply_has_a_status_and_a_refusal_a_reason() {
         Status { state: State::Moving, free: 3, expected_seq: 9, faults: 0x82, ticks_done: 0x0100_0000 };
     let acknowledged = Reply { address: 4, result: Ok(Kind::Status), status };
     let lines =
-        told(&read(Protocol::Framed, false, &acknowledged.emit(None), RowOutcome::Reply(acknowledged)));
+        lines_of(&read(Protocol::Framed, false, &acknowledged.emit(None), RowOutcome::Reply(acknowledged)));
     assert_eq!(lines[2], "kind 2..3 ACK STATUS");
     assert_eq!(
         lines[3..8],
@@ -81,7 +84,7 @@ fn a_reply_has_a_status_and_a_refusal_a_reason() {
         ]
     );
     let refused = Reply { result: Err(Reason::Busy), ..acknowledged };
-    let lines = told(&read(Protocol::Framed, false, &refused.emit(None), RowOutcome::Reply(refused)));
+    let lines = lines_of(&read(Protocol::Framed, false, &refused.emit(None), RowOutcome::Reply(refused)));
     assert_eq!(lines[2..5], ["kind 2..3 NAK", "reason 3..4 4, BUSY", "state 4..5 MOVING"]);
 }
 
@@ -91,17 +94,17 @@ fn the_reply_to_positions_has_four_bytes_per_channel() {
     let reply = Reply { address: 5, result: Ok(Kind::Positions), status };
     let of = |counters: &[i32]| {
         let bytes = reply.emit(Positions::new(counters).as_ref());
-        // As the controller's own, and as what another one hears.
-        let [own, heard] = [RowOutcome::Reply(reply), FRAME].map(|outcome| {
+        // Sent by the controller itself, and received by another one.
+        let [own, received] = [RowOutcome::Reply(reply), FRAME].map(|outcome| {
             let mut summary = String::new();
-            Reading { protocol: Protocol::Framed, addressed: false, channels: &|_| 2 }.summary(
+            Dissector { protocol: Protocol::Framed, addressed: false, channels: &|_| 2 }.summary(
                 &bytes,
                 outcome,
                 &mut summary,
             );
-            (told(&read(Protocol::Framed, false, &bytes, outcome)), summary)
+            (lines_of(&read(Protocol::Framed, false, &bytes, outcome)), summary)
         });
-        assert_eq!(own, heard);
+        assert_eq!(own, received);
         own
     };
     let (lines, summary) = of(&[3, -1200, 0]);
@@ -115,7 +118,7 @@ fn the_reply_to_positions_has_four_bytes_per_channel() {
             "position ch2 20..24 0"
         ]
     );
-    assert!(lines[11].starts_with("check 24..28 ") && lines[11].ends_with("holds"), "{lines:?}");
+    assert!(lines[11].starts_with("CRC 24..28 ") && lines[11].ends_with("valid"), "{lines:?}");
     assert_eq!(
         summary,
         "from 5: ACK POSITIONS: READY, 4 free, seq 1, faults 0x00, 2 ticks done, ch0 at +3, ch1 at \u{2212}1200, ch2 at 0"
@@ -124,57 +127,44 @@ fn the_reply_to_positions_has_four_bytes_per_channel() {
     assert_eq!(lines[8], "position 12..16 \u{2212}2147483648");
     assert!(summary.ends_with("2 ticks done, ch0 at \u{2212}2147483648"), "{summary}");
     assert_eq!(of(&[1; 16]).0.len(), 3 + 5 + 16 + 2);
-    // The frame that asks for them.
-    let asks = read(Protocol::Framed, false, &emit(5, 7, &[]), FRAME);
-    assert_eq!(told(&asks)[2], "kind 2..3 POSITIONS");
+    // The frame that requests them.
+    let request = read(Protocol::Framed, false, &emit(5, 7, &[]), FRAME);
+    assert_eq!(lines_of(&request)[2], "kind 2..3 POSITIONS");
 }
 
 #[test]
-fn a_long_frame_has_its_fields_after_the_byte_that_cobs_adds_every_254() {
-    let orders: Vec<u8> = [1].repeat(600 - 8);
-    let wire = emit(1, 9, &orders);
+fn cobs_bytes_within_a_long_body_are_no_fields() {
+    let commands: Vec<u8> = [1].repeat(600 - 8);
+    let wire = emit(1, 9, &commands);
     let meaning = read(Protocol::Framed, false, &wire, FRAME);
     let codes: Vec<_> = meaning.fields.iter().filter(|field| field.name == "COBS").collect();
     assert_eq!(codes.len(), 1, "the others lie within the body: {meaning:?}");
-    let check = meaning.fields.iter().find(|field| field.name == "check").expect("it has one");
+    let check = meaning.fields.iter().find(|field| field.name == "CRC").expect("it has one");
     assert_eq!(check.bytes, wire.len() - 5..wire.len() - 1);
-    assert!(check.value.ends_with("holds"));
+    assert!(check.value.ends_with("valid"));
 }
 
 #[test]
-fn broken_frames_are_read_up_to_the_fault() {
+fn invalid_frames_are_dissected_up_to_the_fault() {
     let wire = emit(1, 4, &[]);
     let mut flipped = wire.clone();
     flipped[2] ^= 2;
     let meaning = read(Protocol::Framed, false, &flipped, FRAME);
-    assert!(matches!(meaning.check, Check::Compared { found, expected } if found != expected));
-    assert!(told(&meaning).iter().any(|line| line.starts_with("check") && line.ends_with("expected")));
+    assert!(matches!(meaning.crc, CrcCheck::Compared { found, expected } if found != expected));
+    assert!(lines_of(&meaning).iter().any(|line| line.starts_with("CRC") && line.contains("expected")));
 
-    let cut = read(Protocol::Framed, false, &wire[..3], RowOutcome::Open);
-    assert_eq!(told(&cut)[1..], ["address 1..2 1", "kind 2..3 STATUS"]);
-    assert_eq!(cut.check, Check::Missing);
+    let cut = read(Protocol::Framed, false, &wire[..3], RowOutcome::Incomplete);
+    assert_eq!(lines_of(&cut)[1..], ["address 1..2 1", "kind 2..3 STATUS"]);
+    assert_eq!(cut.crc, CrcCheck::Missing);
     let late = [&[3, 9, 0, 0], wire.as_slice()].concat();
     let after = read(Protocol::Framed, false, &late, FRAME);
-    assert_eq!(told(&after)[0], "before it 0..4 no part of the frame");
-    assert!(matches!(after.check, Check::Compared { found, expected } if found == expected));
+    assert_eq!(lines_of(&after)[0], "preceding bytes 0..4 not part of the frame");
+    assert!(matches!(after.crc, CrcCheck::Compared { found, expected } if found == expected));
     for len in 0..=9 {
         for byte in [0, 1, 2, 0x80, 0xff] {
             let bytes = [byte].repeat(len);
             read(Protocol::Framed, false, &bytes, FRAME);
-            read(Protocol::Raw, true, &bytes, RowOutcome::Open);
+            read(Protocol::Raw, true, &bytes, RowOutcome::Incomplete);
         }
     }
-}
-
-#[test]
-fn a_raw_packet_has_an_address_and_commands() {
-    use crate::packets::dissector::Reading;
-    use crate::packets::log::RowOutcome;
-    use stepscope_peripheral::{config::Protocol, signal::PacketOutcome};
-
-    // A raw packet for controller 7, two channels.
-    let reading = Reading { protocol: Protocol::Raw, addressed: true, channels: &|_| 2 };
-    let meaning = reading.of(&[7, 0x85, 0x03], RowOutcome::Packet(PacketOutcome::Queued));
-    assert_eq!(meaning.fields.len(), 3); // the address, and an order a channel
-    assert_eq!(meaning.fields[0].bytes, 0..1);
 }

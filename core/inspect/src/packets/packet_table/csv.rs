@@ -1,7 +1,7 @@
 //! The packet table as CSV (RFC 4180).
 //!
 //! `start_cycle` to `kind` are in cycles, with bytes in hexadecimal; the columns after `number` are in s.
-//! `LineScript::recorded` of the scenario reads the file again.
+//! `LineScript::recorded` of the scenario crate reads this file.
 
 use super::PacketTable;
 use alloc::string::{String, ToString};
@@ -9,6 +9,7 @@ use core::fmt::{self, Write};
 use stepscope_peripheral::units::Instant;
 
 impl PacketTable<'_> {
+    /// Writes the header.
     pub fn write_head(out: &mut impl Write) -> fmt::Result {
         out.write_str("start_cycle,end_cycle,bytes,outcome,tick_start_cycle,tick_end_cycle,kind,")?;
         out.write_str("number,start_s,end_s,gap_s,meaning,tick_start_s,tick_end_s\n")
@@ -24,7 +25,7 @@ impl PacketTable<'_> {
             out.write_char(',')?;
             at.map_or(Ok(()), |Instant(cycle)| write!(out, "{cycle}"))?;
         }
-        let clock_hz = self.own.clock_hz();
+        let clock_hz = self.config.clock_hz();
         let seconds = |cycle: u64| Instant(cycle).seconds(clock_hz);
         let (start_s, end_s) = (seconds(row.start.0), seconds(self.line_end(index)));
         write!(out, ",{},{index},{start_s},{end_s},", kind.name())?;
@@ -64,7 +65,7 @@ mod tests {
     use stepscope_sim::Experiment;
 
     #[test]
-    fn packets_are_rows_and_only_what_needs_it_is_quoted() {
+    fn packets_are_csv_rows_with_quotes_only_where_required() {
         let json = r#"{"bus":{"channels":2},"source":{"packets":{"packets":["8a05"]}}}"#;
         let experiment = Experiment::from_json(json).expect("runs");
         let mut recording = Recording::default();

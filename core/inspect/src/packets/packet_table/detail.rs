@@ -1,7 +1,7 @@
 //! One row in full: fields, CRC, and times.
 
 use super::{Mark, PacketTable, Row};
-use crate::packets::dissector::Check;
+use crate::packets::dissector::CrcCheck;
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 use stepscope_peripheral::units::Cycles;
@@ -12,11 +12,13 @@ const DE_BITS: u64 = 10;
 /// Maximum rows between a reply and its frame.
 const NEAR: usize = 64;
 
+/// One row in full.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Detail {
     #[serde(flatten)]
     pub row: Row,
     pub layout: Vec<FieldRow>,
+    /// The CRC: `none`, `missing`, `holds` or `fails`.
     pub check: &'static str,
     pub check_found: Option<String>,
     pub check_expected: Option<String>,
@@ -26,9 +28,11 @@ pub struct Detail {
     /// From the end of the frame to the rise of DE; `None` for recorded replies.
     pub drive_cycles: Option<u64>,
     pub turnaround_cycles: Option<u64>,
+    /// Row of the frame that it replies to.
     pub answers: Option<usize>,
 }
 
+/// A field; its bytes are `from..until`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct FieldRow {
     pub name: String,
@@ -38,19 +42,20 @@ pub struct FieldRow {
 }
 
 impl PacketTable<'_> {
+    /// Row `index` in full.
     pub fn detail(&self, index: usize) -> Option<Detail> {
-        let (row, meaning) = (self.row(index)?, self.meaning(index)?);
-        let (check, sums) = match meaning.check {
-            Check::None => ("none", None),
-            Check::Missing => ("missing", None),
-            Check::Compared { found, expected } => {
+        let (row, dissection) = (self.row(index)?, self.dissect(index)?);
+        let (check, sums) = match dissection.crc {
+            CrcCheck::None => ("none", None),
+            CrcCheck::Missing => ("missing", None),
+            CrcCheck::Compared { found, expected } => {
                 (if found == expected { "holds" } else { "fails" }, Some((found, expected)))
             }
         };
         let bytes = self.line_bytes(index);
         let answers = self.answered(index);
         let turnaround = answers.map(|frame| row.start_cycle.saturating_sub(self.line_end(frame)));
-        let Cycles(bit) = self.own.bit();
+        let Cycles(bit) = self.config.bit();
         let field = |field: crate::packets::dissector::Field| FieldRow {
             name: field.name.into_owned(),
             from: field.bytes.start,
@@ -58,7 +63,7 @@ impl PacketTable<'_> {
             value: field.value,
         };
         Some(Detail {
-            layout: meaning.fields.into_iter().map(field).collect(),
+            layout: dissection.fields.into_iter().map(field).collect(),
             check,
             check_found: sums.map(|(found, _)| format!("{found:08x}")),
             check_expected: sums.map(|(_, expected)| format!("{expected:08x}")),
@@ -66,7 +71,7 @@ impl PacketTable<'_> {
             byte_length: bytes.first().map_or(0, |byte| byte.end - byte.start),
             gap_cycles: self.gap(index),
             drive_cycles: turnaround
-                .filter(|_| !self.log.is_answered())
+                .filter(|_| !self.log.has_recorded_replies())
                 .map(|cycles| cycles.saturating_sub((REPLY_BITS - DE_BITS) * bit)),
             turnaround_cycles: turnaround,
             answers,
@@ -77,10 +82,10 @@ impl PacketTable<'_> {
     /// The frame of a reply. A recorded reply belongs to the last frame before it.
     pub(super) fn answered(&self, index: usize) -> Option<usize> {
         let reply = self.logged(index).filter(|_| self.is_own_reply(index))?;
-        let wait = Cycles(REPLY_BITS * self.own.bit().0);
+        let wait = Cycles(REPLY_BITS * self.config.bit().0);
         let is_frame = |at: &usize| {
             self.logged(*at).is_some_and(|row| {
-                let is_before = if self.log.is_answered() {
+                let is_before = if self.log.has_recorded_replies() {
                     !self.is_own_reply(*at) && row.end <= reply.start
                 } else {
                     row.end + wait == reply.start

@@ -1,22 +1,19 @@
-//! Why a row failed, and the first row of each fault flag.
+//! Why a packet was dropped or refused, and the first row of each fault flag.
 
 use super::PacketTable;
 use crate::packets::dissector::decoded;
 use crate::packets::log::{LoggedPacket, RowOutcome};
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
-use stepscope_peripheral::{
-    device::Faults,
-    protocol::{FrameOutcome, Reason, Reply},
-    signal::PacketOutcome,
-    wire::{
-        frame::{CRC_LEN, MAX_DECODED, MIN_DECODED, Ticks},
-        packet::{ChannelCommand, GAP_BITS},
-    },
-};
+use stepscope_peripheral::protocol::{FrameOutcome, Reason, Reply};
+use stepscope_peripheral::wire::frame::{CRC_LEN, MAX_DECODED, MIN_DECODED, Ticks};
+use stepscope_peripheral::wire::packet::{ChannelCommand, GAP_BITS};
+use stepscope_peripheral::{device::Faults, signal::PacketOutcome};
 
+/// Maximum rows from a frame to its reply.
 const NEAR: usize = 64;
 
+/// A fault flag with its first occurrence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct FirstFault {
     pub name: &'static str,
@@ -26,30 +23,30 @@ pub struct FirstFault {
 }
 
 impl PacketTable<'_> {
-    /// Such as `3 of 4 bytes, then 45 bit times of silence`; empty where nothing failed, or where
-    /// [`Row::outcome`](super::Row::outcome) is enough.
+    /// Why row `index` was dropped or refused, such as `3 of 4 bytes, then 45 bit times of silence`. Empty if
+    /// [`Row::outcome`](super::Row::outcome) says it all.
     pub fn why(&self, index: usize) -> String {
         let Some(row) = self.logged(index) else { return String::new() };
         let bytes = self.bytes(index);
-        let of_packet = count(self.own.packet_len(), "byte");
+        let of_packet = count(self.config.packet_len(), "byte");
         match row.outcome {
             RowOutcome::Short => {
                 format!("{} of {of_packet}, then {GAP_BITS} bit times of silence", bytes.len())
             }
             RowOutcome::Framing => format!(
-                "the stop bit of byte {} of {} was low; what follows is ignored until {GAP_BITS} bit times of silence",
+                "the stop bit of byte {} of {} was low; all bytes are ignored until {GAP_BITS} bit times of silence",
                 bytes.len() + 1,
-                self.own.packet_len()
+                self.config.packet_len()
             ),
             RowOutcome::Ignored => format!(
                 "{} after a framing error, before {GAP_BITS} bit times of silence",
                 count(bytes.len(), "byte")
             ),
             RowOutcome::Packet(PacketOutcome::TooManySteps) => {
-                let first = usize::from(self.own.packet_address().is_some());
+                let first = usize::from(self.config.packet_address().is_some());
                 self.too_many(bytes.get(first..).unwrap_or_default())
             }
-            RowOutcome::Packet(PacketOutcome::QueueFull) => match self.own.queue_depth() {
+            RowOutcome::Packet(PacketOutcome::QueueFull) => match self.config.queue_depth() {
                 1 => "the queue (1 entry) was full".into(),
                 depth => format!("the queue ({depth} entries) was full"),
             },
@@ -63,6 +60,7 @@ impl PacketTable<'_> {
         }
     }
 
+    /// All fault flags that were set, in the order of their bits.
     pub fn first_faults(&self) -> Vec<FirstFault> {
         let mut first: Vec<FirstFault> = Vec::new();
         let mut raise = |fault: Faults, cycle: u64, row: Option<usize>| {
@@ -81,7 +79,7 @@ impl PacketTable<'_> {
         for (index, row) in self.log.rows().iter().enumerate() {
             raise(fault_of(row), row.end.0, Some(index));
         }
-        for &seen in self.log.broken() {
+        for &seen in self.log.framing_errors() {
             let row = self.log.touching(seen, seen).next();
             raise(Faults::FRAMING, seen.0, row);
         }
@@ -94,23 +92,23 @@ impl PacketTable<'_> {
 
     /// The first command of a tick that exceeds the tick's slots.
     fn too_many(&self, commands: &[u8]) -> String {
-        let (slots, channels) = (self.own.slots(), usize::from(self.own.channels().max(1)));
+        let (slots, channels) = (self.config.slots(), usize::from(self.config.channels().max(1)));
         let moves =
-            commands.iter().enumerate().map(|(fault, &byte)| (fault, ChannelCommand::parse(byte).steps));
-        let Some((fault, steps)) = moves.into_iter().find(|(_, steps)| *steps > slots) else {
+            commands.iter().enumerate().map(|(index, &byte)| (index, ChannelCommand::parse(byte).steps));
+        let Some((index, steps)) = moves.into_iter().find(|(_, steps)| *steps > slots) else {
             return String::new();
         };
-        let tick = match fault / channels {
+        let tick = match index / channels {
             0 if commands.len() <= channels => String::new(),
             tick => format!("tick {tick}, "),
         };
-        format!("{tick}channel {}: {steps} steps do not fit in {slots} slots", fault % channels)
+        format!("{tick}channel {}: {steps} steps do not fit in {slots} slots", index % channels)
     }
 
     fn why_refused(&self, index: usize, reason: Reason) -> String {
         let (content, _) = decoded(self.bytes(index));
         let body = content.get(2..content.len().saturating_sub(CRC_LEN)).unwrap_or_default();
-        let ticks = Ticks::parse(body, self.own.channels());
+        let ticks = Ticks::parse(body, self.config.channels());
         let status = self.reply_to(index).map(|reply| reply.status);
         match (reason, ticks, status) {
             (Reason::BadSeq, Some(ticks), Some(status)) => {
@@ -118,16 +116,16 @@ impl PacketTable<'_> {
             }
             (Reason::QueueFull, Some(ticks), Some(status)) => {
                 format!(
-                    "{}, and {} free in the queue",
+                    "{} for {} in the queue",
                     count(ticks.count(), "tick"),
-                    count(status.free.into(), "place")
+                    count(status.free.into(), "free entry")
                 )
             }
             (Reason::TooManySteps, Some(ticks), _) => self.too_many(ticks.commands()),
             (Reason::Busy, _, Some(status)) => format!("the controller was {}", status.state.name()),
             (Reason::Stopped, ..) => "stopped; send ENABLE first".into(),
             (Reason::BadBody, ..) => {
-                format!("a body of {} does not fit this kind", count(body.len(), "byte"))
+                format!("a body of {} does not match this kind of frame", count(body.len(), "byte"))
             }
             (Reason::UnknownKind, ..) => "unknown kind of frame".into(),
             _ => String::new(),
@@ -157,9 +155,9 @@ fn fault_of(row: &LoggedPacket) -> Faults {
 }
 
 fn short_frame(bytes: &[u8]) -> String {
-    let (content, whole) = decoded(bytes);
+    let (content, is_complete) = decoded(bytes);
     let bytes = count(content.len(), "byte");
-    if whole {
+    if is_complete {
         format!("{bytes} without COBS; a frame has at least {MIN_DECODED}")
     } else {
         format!("the delimiter came after {bytes}, before the end that COBS gives")
@@ -167,7 +165,11 @@ fn short_frame(bytes: &[u8]) -> String {
 }
 
 fn count(number: usize, one: &str) -> String {
-    format!("{number} {one}{}", if number == 1 { "" } else { "s" })
+    match one.strip_suffix('y') {
+        _ if number == 1 => format!("1 {one}"),
+        Some(stem) => format!("{number} {stem}ies"),
+        None => format!("{number} {one}s"),
+    }
 }
 
 #[cfg(test)]
@@ -177,7 +179,7 @@ mod tests {
     use stepscope_peripheral::wire::frame::emit;
     use stepscope_sim::Experiment;
 
-    /// What is said of each row, and of the flags: name, times, row.
+    /// The reason of each row, and the flags: name, times, row.
     type Reported = (Vec<String>, Vec<(&'static str, u64, Option<usize>)>);
 
     fn reported(json: &str) -> Reported {
@@ -218,7 +220,7 @@ mod tests {
         let glitch = r#"{"glitches":[{"start_cycle":4641,"length_cycles":139,"level":0}]}"#;
         let (why, first) = raw(glitch, &[(2000, "8a8a"), (6000, "05")]);
         let framing =
-            "the stop bit of byte 2 of 2 was low; what follows is ignored until 45 bit times of silence";
+            "the stop bit of byte 2 of 2 was low; all bytes are ignored until 45 bit times of silence";
         assert_eq!(why, [framing, "1 byte after a framing error, before 45 bit times of silence"]);
         assert_eq!(first, [("FRAMING", 1, Some(0))]);
     }
@@ -231,9 +233,9 @@ mod tests {
             (vec![3, 1, 2, 0], "2 bytes without COBS; a frame has at least 6"),
             (vec![9, 1, 2, 0], "the delimiter came after 2 bytes, before the end that COBS gives"),
             (ticks(3, &[0x81]), "sequence number 3 instead of 0"),
-            (ticks(0, &[0x81; 20]), "20 ticks, and 4 places free in the queue"),
+            (ticks(0, &[0x81; 20]), "20 ticks for 4 free entries in the queue"),
             (ticks(0, &[0x81, 0x8b]), "tick 1, channel 0: 11 steps do not fit in 10 slots"),
-            (emit(0, 1, &[0]), "a body of 1 byte does not fit this kind"),
+            (emit(0, 1, &[0]), "a body of 1 byte does not match this kind of frame"),
             (emit(0, 99, &[]), "unknown kind of frame"),
             (ticks(0, &[0x81]), ""),
         ];
@@ -247,11 +249,11 @@ mod tests {
             r#"{{"bus":{{"channels":1,"slots":10,"step_period_cycles":800,"queue_depth":4}},"line":{{"protocol":"framed"}},"source":{{"line":{{"sends":[{}]}}}}}}"#,
             sends.join(",")
         ));
-        // Between them stand the replies, of which nothing is said.
-        let said: Vec<&str> = why.iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
+        // The replies between them have no reason.
+        let reasons: Vec<&str> = why.iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
         let expected: Vec<&str> =
             frames.iter().map(|(_, text)| *text).filter(|text| !text.is_empty()).collect();
-        assert_eq!(said, expected);
+        assert_eq!(reasons, expected);
         let names: Vec<_> = first.iter().map(|(name, times, _)| (*name, *times)).collect();
         let flags = ["SHORT_PACKET", "QUEUE_OVERFLOW", "TOO_MANY_STEPS", "BAD_SEQ"];
         assert_eq!(names[..4], [(flags[0], 2), (flags[1], 1), (flags[2], 1), (flags[3], 1)]);

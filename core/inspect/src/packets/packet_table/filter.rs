@@ -1,18 +1,20 @@
-//! Filters and searches the packet table in slices, so that a million rows do not block the page.
+//! Filters and searches the packet table in slices, so that a million rows do not block the caller.
 
 use super::{Mark, PacketTable, RowKind, format};
-use crate::packets::dissector::Head;
-use alloc::vec;
-use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
+use crate::packets::dissector::FrameHead;
+use alloc::{borrow::ToOwned, format, string::String, vec, vec::Vec};
 
+/// The result of a filter and search so far.
 #[derive(Debug, Default)]
 pub struct Filter {
     request: Option<Request>,
     shown: Vec<u32>,
+    /// Positions in `shown` of rows that the search found.
     matches: Vec<u32>,
     next: usize,
 }
 
+/// What to filter and search.
 #[derive(Debug, Default)]
 pub struct Request {
     needle: Option<Needle>,
@@ -25,8 +27,8 @@ pub struct Request {
 }
 
 impl Request {
-    /// Filters are empty for any; the text is searched in hex, words and numbers. Also returns what is wrong with the
-    /// text, if anything.
+    /// An empty text, kind or mark matches every row. The text is searched in bytes, words and row numbers; `only` hides
+    /// rows without a match. Also returns what is wrong with the text, or an empty note.
     pub fn new(text: &str, kind: &str, address: Option<u8>, mark: &str, only: bool) -> (Self, String) {
         let (needle, note) = Needle::parse(text);
         (Self { needle, kind: kind.to_owned(), address, mark: mark.to_owned(), only }, note)
@@ -43,7 +45,7 @@ impl Request {
             "packet" | "frame" | "reply" | "collision" => {
                 table.kind(index).map(RowKind::name) == Some(self.kind.as_str())
             }
-            name => table.head(index).and_then(Head::name) == Some(name),
+            name => table.head(index).and_then(FrameHead::name) == Some(name),
         };
         kind && (self.mark.is_empty() || self.mark == Mark::of(row.outcome).name())
             && (self.address.is_none() || self.address == table.address(index))
@@ -70,7 +72,7 @@ impl Needle {
             Some(rest) => (rest.trim().parse().ok(), true),
             None => (text.parse().ok(), false),
         };
-        let (bytes, note) = if only_number { Default::default() } else { spelled(&text) };
+        let (bytes, note) = if only_number { Default::default() } else { parse_hex(&text) };
         let mut words = vec![text.clone()];
         if text.contains('-') {
             words.push(text.replace('-', "\u{2212}"));
@@ -84,7 +86,7 @@ impl Needle {
         (Some(Self { words, bytes, number, only_number }), note)
     }
 
-    fn finds(&self, table: &PacketTable<'_>, index: usize, text: &mut String) -> bool {
+    fn matches(&self, table: &PacketTable<'_>, index: usize, text: &mut String) -> bool {
         if self.number == Some(index) || self.only_number {
             return self.number == Some(index);
         }
@@ -106,21 +108,21 @@ impl Needle {
     }
 }
 
-/// Bytes that a text spells in hex: `81 05`, `8105`, `0x81 0x05`; reports invalid hex.
-fn spelled(text: &str) -> (Vec<u8>, String) {
-    let meant = text.starts_with("0x");
+/// The bytes of a text in hexadecimal: `81 05`, `8105`, `0x81 0x05`; reports invalid hex.
+fn parse_hex(text: &str) -> (Vec<u8>, String) {
+    let is_marked = text.starts_with("0x");
     let parts = text.split([' ', ',']).filter(|part| !part.is_empty());
     let parts: Vec<&str> = parts.map(|part| part.strip_prefix("0x").unwrap_or(part)).collect();
     let digits = |part: &&str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_hexdigit());
     if !parts.iter().all(digits) {
         let note =
             format!("\u{201c}{text}\u{201d} is not hexadecimal; use two digits per byte, such as 81 05.");
-        return (Vec::new(), if meant { note } else { String::new() });
+        return (Vec::new(), if is_marked { note } else { String::new() });
     }
     if parts.iter().any(|part| part.len() % 2 != 0) {
-        // A plain number is searched among the numbers.
-        let plain = parts.len() == 1 && !meant && text.bytes().all(|byte| byte.is_ascii_digit());
-        let word = parts.len() == 1 && !meant && text.bytes().all(|byte| byte.is_ascii_alphabetic());
+        // A plain number is a row number, a plain word is a text.
+        let plain = parts.len() == 1 && !is_marked && text.bytes().all(|byte| byte.is_ascii_digit());
+        let word = parts.len() == 1 && !is_marked && text.bytes().all(|byte| byte.is_ascii_alphabetic());
         let note = format!(
             "\u{201c}{text}\u{201d} ends within a byte; use two hexadecimal digits per byte, such as 81 05."
         );
@@ -131,6 +133,7 @@ fn spelled(text: &str) -> (Vec<u8>, String) {
 }
 
 impl Filter {
+    /// A filter that has seen no row yet.
     pub fn new(request: Request) -> Self {
         Self { request: Some(request).filter(|request| !request.is_any()), ..Self::default() }
     }
@@ -148,7 +151,7 @@ impl Filter {
             if !request.accepts(table, index) {
                 continue;
             }
-            let found = request.needle.as_ref().is_some_and(|needle| needle.finds(table, index, &mut text));
+            let found = request.needle.as_ref().is_some_and(|needle| needle.matches(table, index, &mut text));
             if found {
                 self.matches.push(self.shown.len() as u32);
             }
@@ -160,14 +163,17 @@ impl Filter {
         until == total
     }
 
+    /// Number of rows shown, of `total`.
     pub fn shown(&self, total: usize) -> usize {
         if self.request.is_some() { self.shown.len() } else { total }
     }
 
+    /// Number of rows that the search found.
     pub fn matches(&self) -> usize {
         self.matches.len()
     }
 
+    /// The row at a position of the filtered table.
     pub fn row(&self, position: usize) -> Option<usize> {
         if self.request.is_none() {
             return Some(position);
@@ -175,6 +181,7 @@ impl Filter {
         self.shown.get(position).map(|&row| row as usize)
     }
 
+    /// The position of a row, if it is shown.
     pub fn position(&self, row: usize) -> Option<usize> {
         if self.request.is_none() {
             return Some(row);
@@ -182,6 +189,7 @@ impl Filter {
         self.shown.binary_search(&(row as u32)).ok()
     }
 
+    /// The number of the match at a position, from 0.
     pub fn rank(&self, position: usize) -> Option<usize> {
         self.matches.binary_search(&(position as u32)).ok()
     }
@@ -223,17 +231,17 @@ mod tests {
             ("dec", &[], false),
             ("ticks seq", &[], false),
         ];
-        for (typed, bytes, said) in rows {
+        for (typed, bytes, has_note) in rows {
             let (needle, note) = Needle::parse(typed);
             let needle = needle.map(|needle| needle.bytes);
-            assert_eq!((needle.as_deref(), !note.is_empty()), (Some(bytes), said), "{typed}: {note}");
+            assert_eq!((needle.as_deref(), !note.is_empty()), (Some(bytes), has_note), "{typed}: {note}");
         }
         assert!(Needle::parse("  ").0.is_none());
         assert!(!Needle::parse("#x").1.is_empty());
     }
 
     #[test]
-    fn matches_go_round_in_both_directions() {
+    fn matches_wrap_around_in_both_directions() {
         let request = Request { mark: "bad".to_owned(), ..Request::default() };
         let filter =
             Filter { request: Some(request), shown: [2, 4, 6, 8].into(), matches: [1, 3].into(), next: 9 };

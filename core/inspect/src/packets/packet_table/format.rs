@@ -1,18 +1,13 @@
 //! Texts and numbers of the packet table: outcomes, marks, hex, times.
 
 use crate::packets::log::RowOutcome;
-use alloc::{
-    borrow::ToOwned,
-    format,
-    string::{String, ToString},
-};
+use alloc::string::{String, ToString};
+use alloc::{borrow::ToOwned, format};
 use core::fmt::Write;
-use stepscope_peripheral::{
-    protocol::{FrameOutcome, Reply},
-    signal::PacketOutcome,
-    units::Cycles,
-};
+use stepscope_peripheral::protocol::{FrameOutcome, Reply};
+use stepscope_peripheral::{signal::PacketOutcome, units::Cycles};
 
+/// The color of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Good,
@@ -22,6 +17,7 @@ pub enum Mark {
 }
 
 impl Mark {
+    /// The mark of an outcome.
     pub const fn of(outcome: RowOutcome) -> Self {
         match outcome {
             RowOutcome::Packet(PacketOutcome::Queued)
@@ -34,6 +30,7 @@ impl Mark {
         }
     }
 
+    /// Its name in outputs.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -60,7 +57,7 @@ pub(super) fn short(row: RowOutcome) -> String {
         RowOutcome::Packet(PacketOutcome::Booting) => "\u{2715} self-test".to_owned(),
         RowOutcome::Ignored => "\u{2715} ignored".to_owned(),
         RowOutcome::Collision => "\u{2715} collision".to_owned(),
-        RowOutcome::Open => "\u{2715} not complete".to_owned(),
+        RowOutcome::Incomplete => "\u{2715} incomplete".to_owned(),
         RowOutcome::Recorded => "\u{2715} unknown".to_owned(),
         row => {
             let full = outcome(row);
@@ -72,13 +69,13 @@ pub(super) fn short(row: RowOutcome) -> String {
     }
 }
 
-pub(super) fn write_hex(bytes: &[u8], between: &str, text: &mut impl Write) {
+pub(super) fn write_hex(bytes: &[u8], separator: &str, text: &mut impl Write) {
     for (index, byte) in bytes.iter().enumerate() {
-        let _ = write!(text, "{}{byte:02x}", if index == 0 { "" } else { between });
+        let _ = write!(text, "{}{byte:02x}", if index == 0 { "" } else { separator });
     }
 }
 
-/// One unit and number of digits per column, so that times compare at a glance.
+/// The unit and number of digits of a column, so that its times are easy to compare.
 #[derive(Clone, Copy, Debug)]
 pub struct TimeScale {
     pub unit: &'static str,
@@ -102,7 +99,7 @@ impl TimeScale {
     pub(super) fn write(self, cycles: u64, text: &mut String) {
         let steps = u128::from(cycles) * u128::from(self.per_s) + u128::from(self.clock_hz / 2);
         let steps = steps / u128::from(self.clock_hz);
-        let whole = 10_u128.pow(self.digits as u32);
-        let _ = write!(text, "{}.{:0width$}", steps / whole, steps % whole, width = self.digits);
+        let scale = 10_u128.pow(self.digits as u32);
+        let _ = write!(text, "{}.{:0width$}", steps / scale, steps % scale, width = self.digits);
     }
 }

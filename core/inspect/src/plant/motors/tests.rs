@@ -7,7 +7,7 @@ use std::{env, fs, path::Path};
 use stepscope_scenario::Compact;
 use stepscope_sim::{Experiment, plant_run::PlantRun};
 
-/// Half a turn in half a second, and what the motor of channel 0 makes of it.
+/// The verdict on the motor of channel 0 after a slow move.
 fn slow_move(change: impl FnOnce(&mut Scenario)) -> String {
     let mut scenario = Scenario::from_json(
         r#"{"plant":{},"source":{"motion":{"engine":"segments","axes":[
@@ -22,17 +22,17 @@ fn slow_move(change: impl FnOnce(&mut Scenario)) -> String {
 }
 
 #[test]
-fn every_motor_and_every_driver_holds_and_follows_a_slow_move() {
+fn all_motors_and_drivers_follow_a_slow_move() {
     for sheet in MOTORS {
-        assert_eq!(slow_move(|scenario| sheet.put_into(scenario)), "follows", "{}", sheet.id);
+        assert_eq!(slow_move(|scenario| sheet.apply_to(scenario)), "follows", "{}", sheet.id);
     }
     for sheet in DRIVES {
-        assert_eq!(slow_move(|scenario| sheet.put_into(scenario)), "follows", "{}", sheet.id);
+        assert_eq!(slow_move(|scenario| sheet.apply_to(scenario)), "follows", "{}", sheet.id);
     }
 }
 
 #[test]
-fn every_word_stands_for_one() {
+fn ids_are_unique() {
     let words: Vec<&str> = MOTORS.iter().map(|sheet| sheet.id).collect();
     for (index, sheet) in MOTORS.iter().enumerate() {
         assert!(!words[..index].contains(&sheet.id), "{} twice", sheet.id);
@@ -64,7 +64,7 @@ fn typical_figures_are_fields_of_the_scenario() {
 }
 
 #[test]
-fn the_documents_motors_are_those_of_their_presets() {
+fn motors_of_papers_equal_those_of_their_presets() {
     let default = Motor::default();
     assert_eq!(motor("song-2021").expect("listed").replacing(&default), default);
     assert_eq!(drive("ideal").expect("listed").drive, Drive::default());
@@ -76,13 +76,13 @@ fn the_documents_motors_are_those_of_their_presets() {
 }
 
 #[test]
-fn supply_and_load_stay_and_every_motor_changes() {
+fn motors_are_replaced_and_supply_and_load_kept() {
     let json = r#"{"bus":{"channels":3},"plant":{"motors":[{"microsteps":2,"full_step_deg":0.9,"motor":{"supply_v":36}}]},
         "source":{"motion":{"axes":[
             {"motor":{"supply_v":36,"load_inertia_g_cm2":7,"peak_current_a":2,"drive":{"diode_v":1}}},
             {"mechanics":{"direct":{}}}, {}]}}}"#;
     let mut scenario = Scenario::from_json(json).expect("reads");
-    motor("as1010").expect("listed").put_into(&mut scenario);
+    motor("as1010").expect("listed").apply_to(&mut scenario);
     let setups = scenario.check().expect("holds").plants.expect("a plant").setups;
     let found: Vec<_> = setups[0]
         .motors
@@ -100,12 +100,12 @@ fn supply_and_load_stay_and_every_motor_changes() {
         .collect();
     let listed = (9.5, 1.0, 1.8, 2, 0.0, 0.7);
     assert_eq!(found, [(9.5, 1.0, 1.8, 16, 7.0, 1.0), listed, listed]);
-    // Without a list the default motor of each channel changes, where it is an axis' with its mechanics.
+    // Without a list the default motor of each channel changes; an axis keeps its mechanics.
     let mut scenario = Scenario::from_json(
         r#"{"bus":{"channels":2},"plant":{},"source":{"motion":{"axes":[{"mechanics":{"rotary":{"microsteps":8}}}]}}}"#,
     )
     .expect("reads");
-    motor("as1010").expect("listed").put_into(&mut scenario);
+    motor("as1010").expect("listed").apply_to(&mut scenario);
     let setups = scenario.check().expect("holds").plants.expect("a plant").setups;
     let found: Vec<_> = setups[0].motors.iter().map(|m| (m.inductance_mh, m.microsteps)).collect();
     assert_eq!(found, [(9.5, 8), (9.5, 16)]);
@@ -151,7 +151,7 @@ fn markdown() -> String {
     text
 }
 
-/// How a scenario's file has it.
+/// The name in a scenario.
 fn word(value: &impl Compact) -> String {
     value.compact().as_str().unwrap_or_default().into()
 }
@@ -161,7 +161,7 @@ fn code(fields: &[&str]) -> String {
 }
 
 #[test]
-fn the_tables_of_the_documentation_are_these() {
+fn tables_of_the_documentation_are_up_to_date() {
     const FROM: &str = "<!-- STEPSCOPE_BLESS=1 cargo test -p stepscope-inspect motors -->\n";
     const TO: &str = "<!-- end -->\n";
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/motors.md");
@@ -177,17 +177,4 @@ fn the_tables_of_the_documentation_are_these() {
             "docs/motors.md has other tables; STEPSCOPE_BLESS=1 cargo test -p stepscope-inspect writes them"
         );
     }
-}
-
-#[test]
-fn a_motor_of_the_list_drives_an_axis() {
-    use crate::plant::motors::{drive, motor};
-    use stepscope_scenario::Scenario;
-    use stepscope_sim::Experiment;
-
-    let mut scenario = Scenario::from_json(r#"{ "plant": {} }"#).expect("it reads");
-    motor("17hs4401").expect("it is listed").put_into(&mut scenario);
-    drive("a4988").expect("it is listed").put_into(&mut scenario);
-    let experiment = Experiment::new(&scenario).expect("it holds");
-    assert_eq!(experiment.plants().expect("it has one").setups[0].motors[0].rotor_inertia_g_cm2, 54.0);
 }

@@ -10,34 +10,25 @@ use stepscope_peripheral::units::Instant;
 pub enum Misaligned {
     /// Only a part is loaded, without the recording's first step.
     Part,
-    None {
-        kind: Kind,
-        aligned: usize,
-        count: usize,
-    },
-    /// The first one would come before the model begins.
-    Early {
-        kind: Kind,
-        aligned: usize,
-        first_s: f64,
-    },
+    /// There is no such step or byte.
+    None { kind: Kind, aligned: usize, count: usize },
+    /// The first one would come before cycle 1.
+    Early { kind: Kind, aligned: usize, first_s: f64 },
 }
 
 impl fmt::Display for Misaligned {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Part => f.write_str(
-                "only a part of the recording is loaded, which cannot be aligned; record a shorter time",
-            ),
+            Self::Part => f.write_str("a part of a recording cannot be aligned; use a shorter recording"),
             Self::None { kind, aligned, count } => write!(
                 f,
-                "there is no {} {aligned}; {count} {} were recorded, from 0: align by one that both have",
+                "there is no {} {aligned}; {count} {} were recorded, numbered from 0; use one that both have",
                 kind.singular(),
                 kind.plural()
             ),
             Self::Early { kind, aligned, first_s } => write!(
                 f,
-                "aligned by {0} {aligned} the first {0} would come at {first_s:.6} s, before the start of the experiment; align by a later one",
+                "aligned by {0} {aligned}, the first {0} would be at {first_s:.6} s, before the start of the experiment; use a later one",
                 kind.singular()
             ),
         }
@@ -48,7 +39,7 @@ impl core::error::Error for Misaligned {}
 
 impl LoadedCapture {
     /// Shifts the recording so that step (or byte) `aligned` of a channel comes at `at_s`. Without steps and bytes
-    /// nothing moves. Fails with [`Misaligned`] if the first would come before cycle 0.
+    /// nothing moves. Fails with [`Misaligned`] if the first would come before cycle 1.
     pub fn align(&mut self, channel: u8, aligned: usize, at_s: f64) -> Result<(), Misaligned> {
         if self.part.is_some() {
             return Err(Misaligned::Part);
@@ -59,7 +50,7 @@ impl LoadedCapture {
         let (kind, count) = (events.kind, events.len());
         let now_s = events.at_s(aligned).ok_or(Misaligned::None { kind, aligned, count })?;
         let first_s = first_s + (at_s - now_s);
-        // A rise in cycle 0 is no step.
+        // A rise in cycle 0 does not count as a step.
         if libm::round(first_s * hz) < 1.0 {
             return Err(Misaligned::Early { kind, aligned, first_s });
         }

@@ -1,33 +1,23 @@
 //! The contents of a loaded capture: steps and bytes, with or without times, and their report.
 
 use super::LoadedCapture;
-use crate::{
-    recording::{
-        alignment::ExactTimes,
-        figures::StepFigures,
-        open_options::{OpenError, OpenOptions, USUAL_CLOCK_HZ, valid_clock},
-        remedy::{Note, Remedy},
-        report::{ChannelReport, LineReport, Report, steps},
-        serial::{DecodedByte, DecodedLine},
-    },
-    trace::timing::Rule,
-};
+use crate::recording::open_options::{DEFAULT_CLOCK_HZ, OpenError, OpenOptions, valid_clock};
+use crate::recording::remedy::{Note, Remedy};
+use crate::recording::report::{ChannelReport, LineReport, Report, steps};
+use crate::recording::serial::{DecodedByte, DecodedLine};
+use crate::recording::{alignment::ExactTimes, figures::StepFigures};
+use crate::trace::timing::Rule;
 use alloc::{borrow::ToOwned, format, vec::Vec};
-use stepscope_capture::{
-    Capture, ChannelMap,
-    capture::{Format, TimedByte},
-    recorded::Records,
-    timebase::Timebase,
-};
+use stepscope_capture::capture::{Format, TimedByte};
+use stepscope_capture::{Capture, ChannelMap, recorded::Records, timebase::Timebase};
 use stepscope_peripheral::{signal::Levels, units::Instant, wire::BitTimes};
 
-const USUAL_BAUD: u32 = 115_200;
-/// Maximum steps of position rows; two rows can demand any number.
+const DEFAULT_BAUD: u32 = 115_200;
+/// Maximum steps of position rows, because two rows can request any number.
 const MAX_STEPS: u64 = 10_000_000;
 
 impl LoadedCapture {
-    /// Figures in the file's own ticks where its clock would round: otherwise a constant rate would have an
-    /// acceleration.
+    /// Figures in ticks of the file if cycles would round them: otherwise a constant rate would have an acceleration.
     pub(super) fn exact_channels(
         &self,
         capture: &Capture,
@@ -53,8 +43,7 @@ impl LoadedCapture {
         !capture.changes.is_empty() && !base.is_exact(self.clock_hz) && !are_generated
     }
 
-    /// Whether ticks are more exact than cycles. Decimal times below a picosecond carry the noise of a float:
-    /// 5.000000000000013e-06.
+    /// Whether ticks are more exact than cycles. Decimal times below 1 ps have rounding noise of a float.
     pub(super) fn has_better_ticks(&self, capture: &Capture, base: Timebase) -> bool {
         let is_noisy = capture.format != Format::Vcd && base.seconds() < 1e-12;
         self.is_rounded(capture, base) && !is_noisy
@@ -70,7 +59,8 @@ impl LoadedCapture {
         self.exact_steps = (0..self.channels).map(of).collect();
     }
 
-    pub(super) fn without_levels(
+    /// The report of bytes or positions; `None` for levels.
+    pub(super) fn report_without_levels(
         &mut self,
         capture: &Capture,
         base: Timebase,
@@ -81,16 +71,16 @@ impl LoadedCapture {
         let cycle = |tick: u64| base.cycle(tick, clock_hz).unwrap_or(u64::MAX);
         let mut report = None;
         if !capture.bytes.is_empty() {
-            let all = decoded(capture.bytes.iter(), cycle);
-            let baud = options.baud.unwrap_or_else(|| likely_baud(&all, clock_hz));
+            let all = decode(capture.bytes.iter(), cycle);
+            let baud = options.baud.unwrap_or_else(|| estimated_baud(&all, clock_hz));
             if options.baud.is_none() {
                 self.notes.push(Note::from(format!(
-                    "the file does not give the bit rate; {baud} baud is assumed from the times of its bytes; set the right rate"
+                    "the file does not give the bit rate; {baud} baud is estimated from the times of its bytes; set the actual rate"
                 )));
             }
             let lines = self.lines_of(capture, map).into_iter();
             let lines = lines.map(|(line, bytes)| {
-                LineReport::of_decoded(line, decoded(bytes.into_iter(), cycle), clock_hz, baud)
+                LineReport::of_decoded(line, decode(bytes.into_iter(), cycle), clock_hz, baud)
             });
             report = Some(Report { channels: Vec::new(), lines: lines.collect() });
         } else if !capture.positions.is_empty() {
@@ -101,6 +91,7 @@ impl LoadedCapture {
         Ok(report)
     }
 
+    /// The bytes of each mapped line.
     pub(super) fn lines_of<'c>(
         &mut self,
         capture: &'c Capture,
@@ -127,6 +118,7 @@ impl LoadedCapture {
         found
     }
 
+    /// Stores the report; fails if it has neither steps nor a decoded line.
     pub(super) fn set_report(&mut self, report: Report, map: &ChannelMap) -> Result<(), OpenError> {
         self.report = report;
         for remedy in self.report.lines.iter_mut().flat_map(|line| &mut line.remedies) {
@@ -135,9 +127,9 @@ impl LoadedCapture {
                 *inverted = !map.entries().iter().any(|entry| entry.bit == bit && entry.inverted);
             }
         }
-        let is_something =
+        let is_decoded =
             !self.report.channels.is_empty() || self.report.lines.iter().any(|line| line.problem.is_none());
-        if let Some(line) = self.report.lines.iter().find(|line| line.problem.is_some() && !is_something) {
+        if let Some(line) = self.report.lines.iter().find(|line| line.problem.is_some() && !is_decoded) {
             return Err(OpenError::NoRate(line.to_text(), line.remedies.clone()));
         }
         for channel in &self.report.channels {
@@ -162,7 +154,7 @@ impl LoadedCapture {
             return Err(OpenError::NoSampleRate(capture.format));
         }
         let baud = options.baud.ok_or(OpenError::NoBaud)?;
-        self.clock_hz = valid_clock(options.clock_hz.unwrap_or(USUAL_CLOCK_HZ))?;
+        self.clock_hz = valid_clock(options.clock_hz.unwrap_or(DEFAULT_CLOCK_HZ))?;
         let times = BitTimes::new(self.clock_hz, baud);
         let mut last = 0;
         for (line, bytes) in self.lines_of(capture, map) {
@@ -187,7 +179,7 @@ impl LoadedCapture {
     }
 }
 
-fn decoded<'c>(bytes: impl Iterator<Item = &'c TimedByte>, cycle: impl Fn(u64) -> u64) -> DecodedLine {
+fn decode<'c>(bytes: impl Iterator<Item = &'c TimedByte>, cycle: impl Fn(u64) -> u64) -> DecodedLine {
     let mut decoded = DecodedLine::default();
     for byte in bytes {
         let start = Instant(cycle(byte.tick));
@@ -200,8 +192,8 @@ fn decoded<'c>(bytes: impl Iterator<Item = &'c TimedByte>, cycle: impl Fn(u64) -
     decoded
 }
 
-/// The closest two bytes are back to back. Bytes of one line of text share a time; then the usual rate or more.
-fn likely_baud(decoded: &DecodedLine, clock_hz: u32) -> u32 {
+/// Assumes that the two closest bytes are back to back. If bytes of a text share a time, at least the usual rate.
+fn estimated_baud(decoded: &DecodedLine, clock_hz: u32) -> u32 {
     let (mut needed, mut shared, mut count) = (0.0_f64, false, 1_u32);
     for (before, byte) in decoded.bytes.iter().zip(decoded.bytes.iter().skip(1)) {
         match byte.start.0.saturating_sub(before.start.0) {
@@ -214,5 +206,5 @@ fn likely_baud(decoded: &DecodedLine, clock_hz: u32) -> u32 {
         }
     }
     let needed = libm::round(needed) as u32;
-    if shared || needed == 0 { needed.max(USUAL_BAUD) } else { needed }
+    if shared || needed == 0 { needed.max(DEFAULT_BAUD) } else { needed }
 }

@@ -1,30 +1,27 @@
 //! Notes on a loaded capture: generated pulses, rounded times, edges that may count otherwise.
 
 use super::LoadedCapture;
-use crate::{
-    recording::remedy::{Note, Remedy},
-    trace::timing::Rule,
-};
+use crate::recording::remedy::{Note, Remedy};
+use crate::trace::timing::Rule;
 use alloc::{borrow::ToOwned, format, string::ToString};
-use stepscope_capture::{
-    Capture, ChannelMap,
-    channel_map::{PulseSource, channel_text},
-    recorded::Rounding,
-};
+use stepscope_capture::channel_map::{PulseSource, channel_text};
+use stepscope_capture::{Capture, ChannelMap, recorded::Rounding};
 
 impl LoadedCapture {
+    /// Notes rounded times, and edges that could not be counted.
     pub(super) fn note_rounding(&mut self, mut rounding: Rounding, others: u64) {
         rounding.rounded += others;
         (self.rounding, self.is_rounded) = (rounding.to_string(), rounding.rounded > 0);
         if rounding.ambiguous > 0 {
             let (s, verb) = if rounding.ambiguous == 1 { ("", "counts") } else { ("s", "count") };
             self.notes.push(Note::from(format!(
-                "{} change{s} of an encoder or of CW and CCW {verb} no step, since both lines changed or were high at once: use a higher sample rate, or check the map",
+                "{} change{s} of an encoder or of CW and CCW {verb} no step, because both lines changed or were high at once; use a higher sample rate or another map",
                 rounding.ambiguous
             )));
         }
     }
 
+    /// Notes generated pulses, and edges that may count differently.
     pub(super) fn note_edges(&mut self, capture: &Capture, map: &ChannelMap) {
         let sources = (0..self.channels).map(|motor| (motor, map.pulse_source(motor)));
         self.generated_pulses = sources.filter(|(_, source)| *source != PulseSource::Step).collect();
@@ -32,13 +29,13 @@ impl LoadedCapture {
             let note = match source {
                 PulseSource::Step => continue,
                 PulseSource::BothEdges => format!(
-                    "channel {motor} steps on both edges of its STEP line: the timing check leaves out pulse width and low time"
+                    "channel {motor} steps on both edges of its STEP line: the timing check excludes pulse width and low time"
                 ),
                 PulseSource::CwCcw => format!(
-                    "channel {motor} has CW and CCW pulses: the timing check leaves out DIR set-up and hold time"
+                    "channel {motor} has CW and CCW pulses: the timing check excludes DIR set-up and hold time"
                 ),
                 PulseSource::Quadrature => format!(
-                    "channel {motor} counts each edge of an encoder: the timing check leaves out its pulses"
+                    "channel {motor} counts each edge of an encoder: the timing check excludes its pulses"
                 ),
             };
             self.notes.push(note.into());

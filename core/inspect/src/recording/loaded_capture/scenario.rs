@@ -1,14 +1,13 @@
 //! The scenario that reproduces a loaded capture.
 
 use super::LoadedCapture;
-use crate::{
-    recording::scenario::{self, Bytes, Refused, Reproduction, Steps},
-    trace::timing::Rule,
-};
+use crate::recording::scenario::{self, ByteRequest, NotReproducible, Reproduction, StepRequest};
+use crate::trace::timing::Rule;
 use alloc::{format, string::String, vec::Vec};
 use stepscope_peripheral::{trace::Step, wire::BitTimes};
 use stepscope_scenario::{Scenario, SegmentLists, Source};
 
+/// Maximum segments, or fields of sends, of an editable scenario.
 const MAX_SHOWN: usize = 20_000;
 const MAX_TITLE: usize = 120;
 
@@ -24,7 +23,7 @@ impl LoadedCapture {
             scenario.source = Source::Segments(SegmentLists::default());
             scenario.title = title(file);
             scenario.note = format!(
-                "Recorded in {file}. No scenario that can be edited here reproduces it: it is too long, too fast for the bus, or has another clock. The command reports which, and can write a long scenario (stepscope capture --write-scenario)."
+                "Recorded in {file}. No editable scenario reproduces it: it is too long, too fast for the bus, or has another clock. stepscope capture --write-scenario reports the reason, or writes a long scenario."
             );
             scenario
         });
@@ -39,22 +38,21 @@ impl LoadedCapture {
         scenario
     }
 
-    /// The scenario that reproduces it: its bytes, unless `steps` is set, otherwise its steps within `error_us`.
-    /// Bytes go to the controllers of `base`.
+    /// The scenario that reproduces its bytes for the controllers of `base`, or its steps within `error_us`.
     pub fn scenario(
         &self,
         file: &str,
         steps: bool,
         error_us: f64,
         base: Option<&Scenario>,
-    ) -> Result<Scenario, Refused> {
+    ) -> Result<Scenario, NotReproducible> {
         let (clock_hz, channels) = (self.clock_hz, self.channels);
         let within_cycles = (error_us * 1e-6 * f64::from(clock_hz)) as u64;
-        let request = Steps { clock_hz, channels, within_cycles };
+        let request = StepRequest { clock_hz, channels, within_cycles };
         let rx = self.report.rx().filter(|line| !line.decoded.bytes.is_empty() && !steps);
         let reproduced: Reproduction = match (rx, &self.position_steps) {
             (Some(line), _) => {
-                let request = Bytes { clock_hz, baud: line.baud, guess: line.guess, channels };
+                let request = ByteRequest { clock_hz, baud: line.baud, guess: line.guess, channels };
                 scenario::of_bytes(&line.decoded, &request, base)
             }
             (None, Some(steps)) => scenario::of_step_times(core::slice::from_ref(steps), &request),
@@ -69,7 +67,9 @@ impl LoadedCapture {
         scenario.title = title(file);
         match scenario.check() {
             Ok(_) => Ok(scenario),
-            Err(problems) => Err(problems.into_iter().next().map_or(Refused::NoBytes, Refused::Invalid)),
+            Err(problems) => {
+                Err(problems.into_iter().next().map_or(NotReproducible::NoBytes, NotReproducible::Invalid))
+            }
         }
     }
 }

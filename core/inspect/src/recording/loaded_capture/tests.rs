@@ -29,13 +29,13 @@ fn bytes_after_the_last_cycle_make_no_scenario() {
     let fast = Scenario { clock_hz: 1_000_000_000, ..Scenario::default() };
     let refused = loaded.scenario("log.txt", false, 0.0, Some(&fast)).expect_err("no such cycle").to_string();
     assert!(
-        refused.contains("start_cycle") && refused.ends_with("shorten it or use another clock"),
+        refused.contains("start_cycle") && refused.ends_with("use a shorter recording or another clock"),
         "{refused}"
     );
 }
 
 #[test]
-fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
+fn bytes_of_two_directions_are_two_mapped_lines() {
     let read =
         |text: &str| read(std::io::Cursor::new(text.to_owned()), &Limits::default(), &mut |_| true).capture;
     let log = "12:00:00.5 TX 55 AA\n12:00:00.6 RX 01\n";
@@ -48,7 +48,7 @@ fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
     };
     assert_eq!(lines(None), [("RX", vec![1]), ("TX", vec![0x55, 0xaa])]);
     assert_eq!(lines(Some("RX=TX,TX=RX")), [("RX", vec![0x55, 0xaa]), ("TX", vec![1])]);
-    // A step within the first cycle is none of the records, and so none of the figures.
+    // A step within the first cycle is not in the records or the figures.
     let loaded =
         LoadedCapture::new(read("time_s,STEP\n0,0\n1e-18,1\n"), &OpenOptions::default()).expect("it loads");
     assert!(loaded.report.channels.is_empty() && loaded.steps_of(0).is_empty());
@@ -60,7 +60,7 @@ fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
         loaded.report.lines.iter().map(|line| (line.name, line.decoded.bytes.len())).collect();
     assert_eq!(found, [("RX", 1), ("TX", 2)]);
     assert_eq!(loaded.report.lines[1].decoded.bytes[0].start, loaded.report.lines[0].decoded.bytes[0].start);
-    // Times without a unit are no places: their length is asked for.
+    // Times without a unit require a sample rate.
     let table = "0,55\n1041,AA\n2083,01\n";
     let options = |sample_rate_hz| OpenOptions { sample_rate_hz, baud: Some(9600), ..OpenOptions::default() };
     assert_eq!(
@@ -74,13 +74,13 @@ fn bytes_of_two_directions_are_two_lines_and_the_map_names_them() {
 }
 
 #[test]
-fn a_part_has_its_records_and_the_figures_of_all() {
+fn a_part_has_the_figures_of_the_whole_recording() {
     let whole = loaded();
     let part = |max_records, from_s, to_s| {
         LoadedCapture::of_part(&capture(), &options(), &Part { max_records, from_s, to_s }).expect("it opens")
     };
     assert_eq!(part(9, None, None), whole);
-    // From one part to another it is as if it were loaded with that at once.
+    // Loading another part equals loading that part first.
     let parts = [
         (4, None, None),
         (9, None, None),
@@ -88,9 +88,9 @@ fn a_part_has_its_records_and_the_figures_of_all() {
         (1, None, None),
         (9, Some(9.0), None),
     ];
-    for (most, from_s, to_s) in parts {
+    for (max, from_s, to_s) in parts {
         for (after, from, to) in parts {
-            let again = part(most, from_s, to_s).with_part(
+            let again = part(max, from_s, to_s).with_part(
                 &capture(),
                 &options(),
                 &Part { max_records: after, from_s: from, to_s: to },
@@ -98,17 +98,17 @@ fn a_part_has_its_records_and_the_figures_of_all() {
             assert_eq!(
                 again,
                 Ok(part(after, from, to)),
-                "{most} {from_s:?} {to_s:?}, then {after} {from:?} {to:?}"
+                "{max} {from_s:?} {to_s:?}, then {after} {from:?} {to:?}"
             );
         }
     }
     let records = |of: &LoadedCapture| -> Vec<(u64, u64)> {
         of.records.iter().map(|record| (record.cycle.0, record.levels.0 & 1)).collect()
     };
-    for (most, from_s, to_s, expected, span) in [
-        // Up to the one that has no room.
+    for (max, from_s, to_s, expected, span) in [
+        // Up to the first record that does not fit.
         (4, None, None, &[(0, 0), (1000, 1), (1100, 0), (2000, 1)][..], (0.0, 0.0021)),
-        // What stands when it begins is at cycle 0.
+        // Levels at the start of the part are at cycle 0.
         (
             9,
             Some(0.002_05),
@@ -121,8 +121,8 @@ fn a_part_has_its_records_and_the_figures_of_all() {
         (9, Some(7.0), Some(1.0), &[(0, 0)], (0.0051, 0.0051)),
         (0, None, Some(0.5), &[(0, 0)], (0.0, 0.001)),
     ] {
-        let found = part(most, from_s, to_s);
-        assert_eq!(records(&found), expected, "{most} {from_s:?} {to_s:?}");
+        let found = part(max, from_s, to_s);
+        assert_eq!(records(&found), expected, "{max} {from_s:?} {to_s:?}");
         let kept = found.part.expect("a part");
         assert_eq!((kept.from_s, kept.to_s, kept.records, kept.of), (span.0, span.1, expected.len(), 9));
         assert_eq!((kept.end_s, found.end_s), (whole.end_s, kept.to_s));
@@ -148,7 +148,7 @@ fn the_overview_covers_the_whole_recording() {
 }
 
 #[test]
-fn any_step_can_be_aligned_unless_one_would_precede_cycle_0() {
+fn steps_are_aligned_unless_one_would_precede_cycle_1() {
     for (aligned, at_s, expected) in [
         (0, 0.01, Ok([10_000, 11_000, 12_000, 14_000])),
         (3, 0.01, Ok([6000, 7000, 8000, 10_000])),
@@ -157,10 +157,10 @@ fn any_step_can_be_aligned_unless_one_would_precede_cycle_0() {
             2,
             0.001,
             Err(
-                "aligned by step 2 the first step would come at -0.001000 s, before the start of the experiment; align by a later one",
+                "aligned by step 2, the first step would be at -0.001000 s, before the start of the experiment; use a later one",
             ),
         ),
-        (4, 0.01, Err("there is no step 4; 4 steps were recorded, from 0: align by one that both have")),
+        (4, 0.01, Err("there is no step 4; 4 steps were recorded, numbered from 0; use one that both have")),
     ] {
         let mut found = loaded();
         let before = found.clone();
@@ -177,27 +177,13 @@ fn any_step_can_be_aligned_unless_one_would_precede_cycle_0() {
             }
         }
     }
-    // A channel on which nothing comes moves nothing.
+    // A channel without steps moves nothing.
     let mut found = loaded();
     assert_eq!((found.align(1, 7, 0.01), &found), (Ok(()), &loaded()));
 }
 
 #[test]
-fn a_dump_is_loaded_with_a_proposed_map() {
-    use crate::recording::{loaded_capture::LoadedCapture, open_options::OpenOptions};
-    use stepscope_capture::read::{Limits, read};
-
-    let dump =
-        "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0! #20 1! #22 0!";
-    let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
-    let loaded = LoadedCapture::new(capture, &OpenOptions::default()).expect("a map is proposed");
-    assert_eq!((loaded.map.as_str(), loaded.clock_hz), ("STEP0=STEP", 1_000_000));
-    assert_eq!(loaded.report.channels[0].figures.steps, 2);
-    assert_eq!(loaded.report.channels[0].figures.greatest_rate_steps_s, Some(100_000.0));
-}
-
-#[test]
-fn steps_of_a_finer_file_are_compared_in_its_own_ticks() {
+fn steps_of_fine_files_are_compared_in_ticks() {
     // The second step is 20 us late, the third 20 us and 1 ps: a clock of 1 GHz rounds both to 20 us.
     let dump = "$timescale 1 ps $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #1000000 1! #2000000 0! \
                 #121000000 1! #122000000 0! #221000001 1! #222000000 0!";

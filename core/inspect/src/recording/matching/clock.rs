@@ -1,5 +1,6 @@
 //! The recording's clock relative to the plan's: a filter of offset and rate.
 
+/// Maximum difference of the clocks' rates.
 const MAX_SLOPE: f64 = 0.125;
 
 #[derive(Clone, Copy, Debug)]
@@ -7,7 +8,7 @@ pub(super) struct Clock {
     at_s: f64,
     late_s: f64,
     slope: f64,
-    /// Starts above 0, so that the first steps do not turn the slope.
+    /// Starts above 0, so that the first steps hardly change the slope.
     seen: u32,
 }
 
@@ -32,8 +33,8 @@ impl Clock {
         self.at_s + (recorded_s - self.at_s - self.late_s) / (1.0 + self.slope)
     }
 
-    /// Follows one more step. The memory grows to dozens of steps for the offset and hundreds for the rate; a shorter
-    /// one would follow a ramp that is matched with its neighbors.
+    /// Adds a step to the filter. Its memory grows to dozens of steps for the offset and hundreds for the rate; a shorter
+    /// memory would follow a ramp whose steps are matched with their neighbors.
     pub(super) fn follow(&self, at_s: f64, late_s: f64) -> Self {
         let seen = self.seen.saturating_add(1);
         let n = f64::from(seen);
@@ -42,8 +43,8 @@ impl Clock {
         let beta = libm::fmax(6.0 / both, 1.0 / 16384.0);
         let (expected, passed) = (self.late_at(at_s), at_s - self.at_s);
         let off = late_s - expected;
-        let turned = if passed > 0.0 { beta * off / passed } else { 0.0 };
-        let slope = (self.slope + turned).clamp(-MAX_SLOPE, MAX_SLOPE);
+        let slope_change = if passed > 0.0 { beta * off / passed } else { 0.0 };
+        let slope = (self.slope + slope_change).clamp(-MAX_SLOPE, MAX_SLOPE);
         Self { at_s, late_s: expected + alpha * off, slope, seen }
     }
 }

@@ -1,26 +1,29 @@
-use super::{
-    clock::Clock,
-    costs::{AGAIN, BYTES, CLEAN, Costs, LATE, STEPS, gap},
-};
+//! The beam search.
+
+use super::clock::Clock;
+use super::costs::{AGAIN, BYTES, CLEAN, Costs, LATE, STEPS, gap};
 use crate::recording::side::Side;
 use alloc::{rc::Rc, vec, vec::Vec};
 
 pub(super) type Pair = (usize, usize);
 
+/// Maximum hypotheses.
 const WIDTH: usize = 16;
+/// Maximum extra cost of a hypothesis.
 const MARGIN: f64 = 2.5;
 /// Maximum extra cost of a hypothesis that may try gaps.
 const SPAWNING: f64 = 1.5;
-/// Steps that are tried as missing or extra in any case.
+/// Gaps up to this length are always tried.
 const NEAR: usize = 3;
+/// Starts up to this step are always tried.
 const NEAR_START: usize = 8;
 /// Intervals that identify a start far from the first steps.
 const SIGNATURE: usize = 32;
 /// A gap this few steps after one of its kind is cheaper.
 const AGAIN_WITHIN: usize = 1;
-/// Steps after which all hypotheses wait for each other.
+/// Steps after which hypotheses are compared.
 const BLOCK: usize = 64;
-/// Blocks within which another start must become cheaper.
+/// Blocks in which a start is compared with other starts.
 const TRIAL: usize = 512;
 /// Cost of an unmatched pair: above that of a step on time.
 const UNMATCHED: f64 = 0.3;
@@ -56,7 +59,7 @@ struct Hypothesis {
     recorded: usize,
     matched: usize,
     cost: f64,
-    /// Includes the minimum cost of the rest.
+    /// The cost, and the minimum cost of the remaining steps.
     estimate: f64,
     clock: Option<Clock>,
     late: f64,
@@ -77,13 +80,13 @@ pub(super) struct Search<'a> {
     costs: Costs,
     /// Minimum interval in s: two cycles of the slower clock.
     min_interval_s: f64,
-    living: Vec<Hypothesis>,
+    beam: Vec<Hypothesis>,
     best: Option<Hypothesis>,
     /// Minimum estimate of all starts per block.
     trial: Vec<f64>,
     trial_end: f64,
     block: usize,
-    /// A start behind many steps reaches a block without their jitter, so it sets no limit for other starts.
+    /// A start after many steps has no cost of their jitter, so it sets no limit for other starts.
     is_far: bool,
     /// Maximum gaps per start: bounds the time on recordings that are unlike the plan.
     pub(super) max_gaps: usize,
@@ -101,7 +104,7 @@ impl<'a> Search<'a> {
             model,
             costs: if model.values.is_empty() { STEPS } else { BYTES },
             min_interval_s: 2.0 / f64::from(slower),
-            living: Vec::with_capacity(WIDTH),
+            beam: Vec::with_capacity(WIDTH),
             best: None,
             trial: vec![f64::INFINITY; TRIAL],
             trial_end: f64::INFINITY,
@@ -114,11 +117,11 @@ impl<'a> Search<'a> {
     }
 
     pub(super) fn run(&mut self) -> Option<(Pair, Vec<Pair>)> {
-        // One start after the other, because they would displace each other in the beam.
+        // One after the other, because starts would displace each other in the beam.
         for (model, recorded) in self.starts() {
             self.begin(model, recorded);
-            while let Some(next) = self.next() {
-                self.go_on(next);
+            while let Some(next) = self.take_next() {
+                self.expand(next);
             }
         }
         let best = self.best.as_ref()?;
@@ -134,7 +137,7 @@ impl<'a> Search<'a> {
 
     fn starts(&self) -> Vec<Pair> {
         let mut starts = vec![(0, 0)];
-        if self.unlike(self.recorded, 0, self.model, 0) > 0.02 * SIGNATURE as f64 {
+        if self.mismatch(self.recorded, 0, self.model, 0) > 0.02 * SIGNATURE as f64 {
             let far = |hay: Side<'a>, needle: Side<'a>| self.find(hay, needle).filter(|at| *at > NEAR_START);
             starts.extend(far(self.model, self.recorded).map(|at| (at, 0)));
             starts.extend(far(self.recorded, self.model).map(|at| (0, at)));
@@ -161,10 +164,11 @@ impl<'a> Search<'a> {
             last_gap: None,
             start: Rc::new(Start { model, recorded, before: None }),
         };
-        self.step(&start, None);
+        self.match_next(&start, None);
     }
 
-    fn unlike(&self, one: Side<'a>, from: usize, other: Side<'a>, other_from: usize) -> f64 {
+    /// Sum of the relative differences of the next intervals of two sides.
+    fn mismatch(&self, one: Side<'a>, from: usize, other: Side<'a>, other_from: usize) -> f64 {
         let interval = |side: &Side<'a>, index: usize| Some(side.at_s(index + 1)? - side.at_s(index)?);
         let mut sum = 0.0;
         for index in 0..SIGNATURE {
@@ -178,24 +182,25 @@ impl<'a> Search<'a> {
         sum
     }
 
+    /// Where the first intervals of `needle` are in `hay`.
     fn find(&self, hay: Side<'a>, needle: Side<'a>) -> Option<usize> {
         if needle.steps.len() <= SIGNATURE {
             return None;
         }
         let (mut min, mut found) = (0.1 * SIGNATURE as f64, None);
         for at in 0..=hay.steps.len().checked_sub(SIGNATURE + 1)? {
-            let unlike = self.unlike(hay, at, needle, 0);
-            if unlike < 0.9 * min {
-                (min, found) = (unlike, Some(at));
+            let mismatch = self.mismatch(hay, at, needle, 0);
+            if mismatch < 0.9 * min {
+                (min, found) = (mismatch, Some(at));
             }
         }
         found
     }
 
     /// Takes the hypothesis with the fewest steps and drops the expensive ones.
-    fn next(&mut self) -> Option<Hypothesis> {
-        let block = self.living.iter().map(Hypothesis::block).min()?;
-        let min = self.living.iter().fold(f64::INFINITY, |min, of| libm::fmin(min, of.estimate));
+    fn take_next(&mut self) -> Option<Hypothesis> {
+        let block = self.beam.iter().map(Hypothesis::block).min()?;
+        let min = self.beam.iter().fold(f64::INFINITY, |min, of| libm::fmin(min, of.estimate));
         let mut max = libm::fmin(min + MARGIN, self.best_estimate());
         if block > self.block {
             // Compare with other starts at the end of each block.
@@ -212,10 +217,10 @@ impl<'a> Search<'a> {
             }
             self.block = block;
         }
-        self.living.retain(|living| living.estimate < max);
-        let far = |living: &Hypothesis| living.model + living.recorded;
-        let (first, _) = self.living.iter().enumerate().min_by_key(|(_, living)| far(living))?;
-        Some(self.living.swap_remove(first))
+        self.beam.retain(|of| of.estimate < max);
+        let steps = |of: &Hypothesis| of.model + of.recorded;
+        let (first, _) = self.beam.iter().enumerate().min_by_key(|(_, of)| steps(of))?;
+        Some(self.beam.swap_remove(first))
     }
 
     fn best_estimate(&self) -> f64 {
@@ -223,10 +228,11 @@ impl<'a> Search<'a> {
     }
 
     fn least_estimate(&self) -> f64 {
-        self.living.iter().fold(self.best_estimate(), |min, living| libm::fmin(min, living.estimate))
+        self.beam.iter().fold(self.best_estimate(), |min, of| libm::fmin(min, of.estimate))
     }
 
-    fn go_on(&mut self, mut hypothesis: Hypothesis) {
+    /// Extends a hypothesis to the end of its block, or by the alternatives for a step that is not on time.
+    fn expand(&mut self, mut hypothesis: Hypothesis) {
         let block = hypothesis.block();
         while self.follow(&mut hypothesis) {
             if hypothesis.block() > block {
@@ -241,7 +247,7 @@ impl<'a> Search<'a> {
             }
             return;
         }
-        let is_clean = self.step(&hypothesis, None);
+        let is_clean = self.match_next(&hypothesis, None);
         let max = self.least_estimate() + SPAWNING;
         if is_clean || hypothesis.estimate > max || self.tried_gaps >= self.max_gaps {
             return;
@@ -250,15 +256,16 @@ impl<'a> Search<'a> {
         for count in 1..=NEAR {
             gaps.extend([Gap::Missing(count), Gap::Extra(count)]);
         }
-        self.due_gaps(&hypothesis, &mut gaps);
+        self.add_gaps_by_time(&hypothesis, &mut gaps);
         for gap in gaps {
             self.tried_gaps += 1;
             self.all_tried_gaps += 1;
-            self.step(&hypothesis, Some(gap));
+            self.match_next(&hypothesis, Some(gap));
         }
     }
 
-    fn due_gaps(&self, hypothesis: &Hypothesis, gaps: &mut Vec<Gap>) {
+    /// Adds the longer gaps after which the next step is on time.
+    fn add_gaps_by_time(&self, hypothesis: &Hypothesis, gaps: &mut Vec<Gap>) {
         let Hypothesis { model, recorded, .. } = *hypothesis;
         let (Some(clock), Some(due), Some(came)) =
             (hypothesis.clock, self.model.at_s(model), self.recorded.at_s(recorded))
@@ -303,7 +310,7 @@ impl<'a> Search<'a> {
         hypothesis.matched += 1;
         (hypothesis.model, hypothesis.recorded) = (model + 1, recorded + 1);
         hypothesis.cost += self.costs.off(off);
-        hypothesis.estimate = hypothesis.cost + self.rest(hypothesis);
+        hypothesis.estimate = hypothesis.cost + self.remaining_cost(hypothesis);
         true
     }
 
@@ -312,16 +319,17 @@ impl<'a> Search<'a> {
             || self.model.values.get(model) != self.recorded.values.get(recorded)
     }
 
-    fn rest(&self, hypothesis: &Hypothesis) -> f64 {
+    /// Minimum cost of the remaining steps.
+    fn remaining_cost(&self, hypothesis: &Hypothesis) -> f64 {
         let model = self.model.steps.len().saturating_sub(hypothesis.model);
         gap(model.abs_diff(self.recorded.steps.len().saturating_sub(hypothesis.recorded)))
     }
 
-    /// Matches the next step behind a gap. Returns whether it was on time.
-    fn step(&mut self, from: &Hypothesis, behind: Option<Gap>) -> bool {
+    /// Matches the next step, after an optional gap. Returns whether it is on time.
+    fn match_next(&mut self, from: &Hypothesis, gap_before: Option<Gap>) -> bool {
         let (mut model, mut recorded, mut cost) = (from.model, from.recorded, from.cost);
         let (mut last_gap, mut start) = (from.last_gap, None);
-        if let Some(found) = behind {
+        if let Some(found) = gap_before {
             let (count, is_missing) = match found {
                 Gap::Missing(count) => (count, true),
                 Gap::Extra(count) => (count, false),
@@ -347,11 +355,11 @@ impl<'a> Search<'a> {
         let differs = self.differs(model, recorded);
         let mut differing = 0.0;
         if differs {
-            differing = self.costs.differing_row(from.differing);
+            differing = self.costs.differing_run(from.differing);
             cost += differing - from.differing;
         }
-        let row = self.costs.late_row(off);
-        let late = if row > 0.0 { libm::fmax(from.late, row) } else { 0.0 };
+        let late_run = self.costs.late_run(off);
+        let late = if late_run > 0.0 { libm::fmax(from.late, late_run) } else { 0.0 };
         let clock = from.clock.unwrap_or(Clock::new(due, late_s));
         let start = start.unwrap_or_else(|| Rc::clone(&from.start));
         let mut next = Hypothesis {
@@ -366,7 +374,7 @@ impl<'a> Search<'a> {
             last_gap,
             start,
         };
-        next.estimate = next.cost + self.rest(&next);
+        next.estimate = next.cost + self.remaining_cost(&next);
         if late > 0.0 {
             let mut shifted = Hypothesis {
                 cost: cost + self.costs.shift,
@@ -374,14 +382,14 @@ impl<'a> Search<'a> {
                 late: 0.0,
                 ..next.clone()
             };
-            shifted.estimate = shifted.cost + self.rest(&shifted);
+            shifted.estimate = shifted.cost + self.remaining_cost(&shifted);
             self.push(shifted);
         }
         self.push(next);
         off <= CLEAN && differs == (from.differing > 0.0)
     }
 
-    /// Adds a hypothesis in place of one at the same steps with the same clock, or of the most expensive.
+    /// Adds a hypothesis. It replaces one at the same steps with the same clock, or the one with the highest cost.
     fn push(&mut self, next: Hypothesis) {
         let late = |of: &Hypothesis| of.clock.map_or(0.0, |clock| clock.late_s());
         let near_s = self.interval_s(next.model.saturating_sub(1)) / 4.0;
@@ -390,14 +398,14 @@ impl<'a> Search<'a> {
                 && of.recorded == next.recorded
                 && libm::fabs(late(of) - late(&next)) <= near_s
         };
-        if let Some(same) = self.living.iter_mut().find(is_same) {
+        if let Some(same) = self.beam.iter_mut().find(is_same) {
             if next.cost < same.cost {
                 *same = next;
             }
-        } else if self.living.len() < WIDTH {
-            self.living.push(next);
+        } else if self.beam.len() < WIDTH {
+            self.beam.push(next);
         } else if let Some(worst) =
-            self.living.iter_mut().max_by(|one, other| one.estimate.total_cmp(&other.estimate))
+            self.beam.iter_mut().max_by(|one, other| one.estimate.total_cmp(&other.estimate))
             && next.estimate < worst.estimate
         {
             *worst = next;

@@ -63,7 +63,7 @@ fn without(planned: &[f64], missing: core::ops::Range<usize>) -> Vec<f64> {
 }
 
 #[test]
-fn missing_steps_are_named_wherever_they_are() {
+fn missing_steps_are_found_at_any_position() {
     for kind in 0..3 {
         let plan = plan(kind, 3200);
         check(&plan, &plan, &[]);
@@ -74,7 +74,7 @@ fn missing_steps_are_named_wherever_they_are() {
         let both = without(&without(&plan, 2500..2503), 400..401);
         check(&plan, &both, &["-400x1", "-2500x3"]);
     }
-    // At the beginning: a constant rate has nothing to tell it by.
+    // At the beginning; a constant rate cannot show it.
     let ramp = plan(1, 3200);
     check(&ramp, &without(&ramp, 0..1), &["-0x1"]);
     check(&ramp, &without(&ramp, 0..5), &["-0x5"]);
@@ -82,7 +82,7 @@ fn missing_steps_are_named_wherever_they_are() {
 }
 
 #[test]
-fn extra_steps_are_named_wherever_they_are() {
+fn extra_steps_are_found_at_any_position() {
     for kind in 0..3 {
         let plan = plan(kind, 3200);
         for (at, count) in [(1, 1), (500, 1), (2000, 1), (2000, 7), (3199, 3)] {
@@ -104,7 +104,7 @@ fn extra_steps_are_named_wherever_they_are() {
 fn late_steps_and_pauses_are_neither_missing_nor_extra() {
     for kind in 0..3 {
         let plan = plan(kind, 3200);
-        // All from step 1000 on are late by many intervals; one is late by most of one.
+        // All from step 1000 on are late by many intervals; one is late by 0.9 intervals.
         let pause = |at: usize, by: f64| {
             plan.iter().enumerate().map(|(k, t)| t + if k >= at { by } else { 0.0 }).collect::<Vec<_>>()
         };
@@ -131,7 +131,7 @@ fn random_edits_are_found_through_drift_and_jitter() {
         let mut before = -1.0;
         while index < plan.len() {
             let after = plan.get(index + 1).copied().unwrap_or(plan[index] + 1e-3) - plan[index];
-            let least = libm::fmin(after, if index > 0 { plan[index] - plan[index - 1] } else { after });
+            let interval = libm::fmin(after, if index > 0 { plan[index] - plan[index - 1] } else { after });
             let is_edit = index == next && index < 3000;
             let missing = if is_edit { [0, 1, 1 + noise.below(20)][noise.below(3)] } else { 0 };
             if is_edit {
@@ -142,7 +142,7 @@ fn random_edits_are_found_through_drift_and_jitter() {
                 index += missing;
                 continue;
             }
-            let at = libm::fmax(plan[index] + jitter * least * noise.between(-1.0, 1.0), before + 1e-7);
+            let at = libm::fmax(plan[index] + jitter * interval * noise.between(-1.0, 1.0), before + 1e-7);
             recorded.push(at);
             if is_edit {
                 expected.push(format!("+{index}x1"));
@@ -177,7 +177,7 @@ fn a_recording_that_is_unlike_the_plan_is_matched_with_bounded_effort() {
     let side = |steps| Side { steps, clock_hz: 1_000_000, values: &[] };
     let mut search = Search::new(side(&recorded), side(&model));
     search.run();
-    // Most starts are given up early; each has at most 1_690_000.
+    // Most starts end early; each may try at most 1_690_000.
     assert!(search.all_tried_gaps < 5_000_000, "{}", search.all_tried_gaps);
     let matching = Matching::of(side(&recorded), side(&model));
     // Most steps are near one that was planned.
@@ -221,7 +221,7 @@ fn bytes_are_matched_by_their_values() {
 }
 
 #[test]
-fn the_ends_of_matching() {
+fn sides_with_few_or_simultaneous_steps_are_matched() {
     let one = steps(&[1.0], 1e6);
     let side = |steps| Side { steps, clock_hz: 1_000_000, values: &[] };
     assert!(Matching::of(side(&[]), side(&one)).is_empty() && Matching::of(side(&one), side(&[])).is_empty());

@@ -1,15 +1,15 @@
-//! Every answer against one that looks at all records, or at all cycles.
+//! Every result compared with that of a plain loop over all records, or all cycles.
 
 use super::*;
 use proptest::{collection::vec, prelude::*};
 use stepscope_peripheral::{signal::Levels, units::Instant};
 
-/// A few signals over a trace of up to some thousand records, in stretches in which one of them rests.
+/// A few signals over a trace of up to some thousand records, in intervals in which only some of them change.
 fn traces() -> impl Strategy<Value = Vec<Record>> {
-    let stretch = (1_u64..=9, 0_u64..16, 1_usize..600, any::<u64>());
-    (0_u64..16, vec(stretch, 0..8)).prop_map(|(reset, stretches)| {
+    let interval = (1_u64..=9, 0_u64..16, 1_usize..600, any::<u64>());
+    (0_u64..16, vec(interval, 0..8)).prop_map(|(reset, intervals)| {
         let mut trace = Vec::from([record(0, reset)]);
-        for (pause, mask, count, seed) in stretches {
+        for (pause, mask, count, seed) in intervals {
             let mut seed = seed | 1;
             for _ in 0..count {
                 seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -64,7 +64,7 @@ fn columns(trace: &[Record], start: u64, end: u64, count: usize) -> Columns {
 
 proptest! {
     #[test]
-    fn columns_are_those_of_every_record(
+    fn columns_equal_those_of_a_loop_over_all_records(
         trace in traces(), slice in 1_usize..3000, window in (0_u64..9000, 1_u64..9000),
         count in 1_usize..90, margin in 0_usize..40,
     ) {
@@ -76,7 +76,7 @@ proptest! {
         prop_assert_eq!(&found.high[middle.clone()], &expected.high[..]);
         prop_assert_eq!(&found.low[middle.clone()], &expected.low[..]);
         prop_assert_eq!(&found.last[middle], &expected.last[..]);
-        // A margin column is a column of the stretch that begins with it.
+        // A margin column equals the only column of a view of the same cycles.
         for i in (0..margin).chain(margin + count..count + 2 * margin) {
             let bound = |i: usize| i128::from(start) + (i128::from(window.1) * (i as i128 - margin as i128)).div_euclid(count as i128);
             let (first, after) = (bound(i), bound(i + 1).max(bound(i) + 1));
@@ -87,7 +87,7 @@ proptest! {
     }
 
     #[test]
-    fn edges_are_those_of_every_record(trace in traces(), bit in 0_u8..5, at in 0_u64..12_000, slice in 1_usize..3000) {
+    fn edges_equal_those_of_a_loop_over_all_records(trace in traces(), bit in 0_u8..5, at in 0_u64..12_000, slice in 1_usize..3000) {
         let changes = changes(&trace, slice);
         let mask = 1 << bit;
         for edge in [Edge::Any, Edge::Rise, Edge::Fall] {
@@ -125,7 +125,6 @@ fn the_first_rise_of_a_run_is_found() {
     use stepscope_peripheral::trace::steps;
     use stepscope_sim::Experiment;
 
-    // Of the trace of a run: the first rise of STEP0, bit 0.
     let experiment = Experiment::from_json("{}").expect("the default motion");
     let mut recording = Recording::default();
     experiment.run(&mut recording);

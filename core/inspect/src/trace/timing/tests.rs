@@ -1,4 +1,4 @@
-//! Each rule at its limit and one cycle under it, and what is not measured at all.
+//! Each rule at its limit and one cycle below it, and times that are not measured.
 
 use super::*;
 
@@ -28,17 +28,17 @@ fn found(check: &TimingCheck) -> Vec<Row> {
     check.violations().iter().map(row).collect()
 }
 
-/// Rules that ask for `nanos` under `rule` and for nothing else.
+/// Rules that require `nanos` for `rule` and no other time.
 fn only(rule: Rule, nanos: u32) -> TimingRules {
     let mut rules = TimingRules::default();
-    let place = match rule {
+    let required = match rule {
         Rule::StepHigh => &mut rules.step_high_ns,
         Rule::StepLow => &mut rules.step_low_ns,
         Rule::DirSetup => &mut rules.dir_setup_ns,
         Rule::DirHold => &mut rules.dir_hold_ns,
         Rule::EnableWake => &mut rules.enable_wake_ns,
     };
-    *place = nanos;
+    *required = nanos;
     assert_eq!(rule.nanos(&rules), nanos);
     rules
 }
@@ -57,7 +57,7 @@ fn time(rule: Rule, cycles: u64) -> Vec<(u64, u64)> {
 }
 
 #[test]
-fn each_rule_holds_from_the_fewest_cycles_that_last_as_long_and_not_one_under() {
+fn each_rule_accepts_its_limit_and_rejects_one_cycle_less() {
     // 1900 ns are 30.4 cycles of 62.5 ns; 333 ns at 3 MHz are 0.999 cycles, 334 ns are 1.002.
     let limits: [(u32, u32, u64); 9] = [
         (16_000_000, 1900, 31),
@@ -89,8 +89,8 @@ fn each_rule_holds_from_the_fewest_cycles_that_last_as_long_and_not_one_under() 
 }
 
 #[test]
-fn what_never_changed_is_not_measured() {
-    // One pulse with DIR as at reset; a second that the end cuts.
+fn levels_that_never_changed_are_not_measured() {
+    // One pulse with DIR as at reset, cut by the end.
     let all = TimingRules {
         step_high_ns: 1_000_000_000,
         step_low_ns: 1_000_000_000,
@@ -103,7 +103,7 @@ fn what_never_changed_is_not_measured() {
     let measured: Vec<Rule> =
         check.results().iter().filter(|r| r.shortest.is_some()).map(|r| r.rule).collect();
     assert_eq!(measured, [Rule::EnableWake], "only the wake-up, which counts from reset");
-    // The line's edges are nothing.
+    // Edges of the serial line are not measured.
     let check = checked(&all, 16_000_000, &[(5, Levels::RX), (6, Levels::TX | Levels::DE), (7, Levels::RX)]);
     assert!(check.results().iter().all(|result| result.shortest.is_none()));
 }
@@ -120,21 +120,21 @@ fn simultaneous_edges_and_enable_follow_the_rules() {
     };
     let other = (STEP | DIR) << 15;
     let rows: &[Case] = &[
-        // DIR with the rise is a set-up of nothing; its hold counts from the rise before.
+        // DIR that changes with the rise has a set-up of 0; its hold counts from the rise before.
         (
             &[(20, STEP), (25, STEP), (27, STEP | DIR), (30, STEP)],
             &[(0, DirHold, 27, 7, 8), (0, DirSetup, 27, 0, 3)],
         ),
         (&[(20, STEP), (25, STEP), (40, STEP | DIR)], &[(0, DirSetup, 40, 0, 3)]),
-        // Within a pulse DIR breaks the hold, and so it does just after a short one.
+        // DIR violates the hold within a pulse, and just after a short one.
         (&[(20, STEP), (24, DIR), (25, STEP)], &[(0, DirHold, 24, 4, 8)]),
         (&[(20, STEP), (22, STEP | DIR)], &[(0, DirHold, 22, 2, 8), (0, StepHigh, 22, 2, 3)]),
-        // The set-up is measured at each step: a second one can be too early too.
+        // The set-up is measured at each step.
         (
             &[(20, DIR), (21, STEP), (22, STEP), (22 + 1, STEP)],
             &[(0, DirSetup, 21, 1, 3), (0, StepHigh, 22, 1, 3)],
         ),
-        // A channel's first step after reset, and after each EN; the next ones are not asked.
+        // The wake-up is measured at a channel's first step after reset, and after each EN.
         (
             &[(19, STEP | STEP << 15), (25, STEP | STEP << 15), (30, STEP)],
             &[(0, EnableWake, 19, 19, 20), (15, EnableWake, 19, 19, 20)],
@@ -144,7 +144,7 @@ fn simultaneous_edges_and_enable_follow_the_rules() {
             &[(0, EnableWake, 59, 19, 20)],
         ),
         (&[(30, Levels::EN), (40, Levels::EN | STEP)], &[(0, EnableWake, 40, 0, 20)]),
-        // While EN is low nothing wakes; STOP's cut is a short pulse.
+        // While EN is low there is no wake-up; a pulse cut by STOP is short.
         (&[(30, Levels::EN), (31, STEP), (35, STEP), (60, Levels::EN), (80, STEP)], &[]),
         (&[(20, STEP), (21, STEP | Levels::EN)], &[(0, StepHigh, 21, 1, 3)]),
         // One cycle's channels in ascending order.
@@ -189,7 +189,7 @@ fn only_the_first_violations_are_listed_and_all_are_counted() {
 }
 
 #[test]
-fn longer_pulses_than_those_of_a_run_are_violations() {
+fn rules_longer_than_the_pulses_of_a_run_are_violated() {
     use crate::trace::{
         drivers::TB6600_CLASS,
         timing::{Rule, TimingCheck},

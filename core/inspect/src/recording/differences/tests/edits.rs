@@ -118,11 +118,11 @@ impl Case {
         let found = Differences::of(&alignment, within);
         let row = |of: &Difference| {
             let step = of.step.map_or(-1, |step| step as i64);
-            let sign = match of.what {
-                What::Missing => '-',
-                What::Extra => '+',
-                What::Direction => '~',
-                What::Value | What::Late => '?',
+            let sign = match of.kind {
+                DifferenceKind::Missing => '-',
+                DifferenceKind::Extra => '+',
+                DifferenceKind::Direction => '~',
+                DifferenceKind::Value | DifferenceKind::Late => '?',
             };
             format!("{sign}{step}x{}", of.count)
         };
