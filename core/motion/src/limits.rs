@@ -1,4 +1,11 @@
 //! The range of each number of a plan (DESIGN Part B); rules that combine several are checked with the curve.
+//!
+//! ```
+//! use stepscope_motion::{MAX_SPEED, limits};
+//!
+//! assert!(limits::MICROSTEPS.contains(&256.0));
+//! assert_eq!(*limits::SPEED_STEPS_S.end(), MAX_SPEED);
+//! ```
 
 use crate::{MAX_SPEED, motor::MAX_PEAK_CURRENT, moves::MAX_POINTS};
 use core::ops::RangeInclusive;

@@ -80,8 +80,10 @@ impl fmt::Display for ValueError {
                 }
                 write!(f, "{space}{unit}")
             }
-            Self::Length { given, min, max, of } if min == max => write!(f, "{given} {of}; use {min}"),
-            Self::Length { given, min, max, of } => write!(f, "{given} {of}; use {min} to {max}"),
+            Self::Length { given, min, max, of } => {
+                write!(f, "{given} {}; use {min}", noun(*given, of))?;
+                if min < max { write!(f, " to {max}") } else { Ok(()) }
+            }
             Self::Conflict { detail } => f.write_str(detail),
             Self::TooMuch { given, max, of } => {
                 let (given, max) = (Short(*given), Short(*max));
@@ -91,10 +93,18 @@ impl fmt::Display for ValueError {
     }
 }
 
+fn noun(number: usize, plural: &str) -> &str {
+    match (number, plural) {
+        (1, "axes") => "axis",
+        (1, "entries") => "entry",
+        (1, _) => plural.strip_suffix('s').unwrap_or(plural),
+        _ => plural,
+    }
+}
+
 fn smaller_load(of: &str) -> &'static str {
     match of {
         "table rows" => "a higher acceleration or a lower top speed",
-        "moves" => "fewer moves",
         "steps" => "a shorter motion, or run it by ticks",
         "steps of a table" => "a shorter motion, or a table for each part of it",
         "steps to be measured" | "seconds" | "cycles" => "a shorter motion",

@@ -4,6 +4,8 @@ use crate::problem::{Cause, Problem, ValueError};
 use alloc::{string::String, vec::Vec};
 use core::{fmt::Write as _, ops::RangeInclusive};
 
+type Range<T> = RangeInclusive<T>;
+
 /// Maximum number of listed problems per scenario.
 pub const MAX_PROBLEMS: usize = 100;
 
@@ -112,13 +114,7 @@ impl<C: From<ValueError>> Validator<C> {
     }
 
     /// Returns a number that is in its range, or adds a problem. NaN is in no range.
-    pub fn range(
-        &mut self,
-        field: &str,
-        given: f64,
-        range: RangeInclusive<f64>,
-        unit: &'static str,
-    ) -> Option<f64> {
+    pub fn range(&mut self, field: &str, given: f64, range: Range<f64>, unit: &'static str) -> Option<f64> {
         if range.contains(&given) {
             return Some(given);
         }
@@ -128,13 +124,7 @@ impl<C: From<ValueError>> Validator<C> {
     }
 
     /// Checks an integer. A problem has it as f64, which is exact for all allowed values.
-    pub fn whole(
-        &mut self,
-        field: &str,
-        given: impl Into<u64>,
-        range: RangeInclusive<u64>,
-        unit: &'static str,
-    ) {
+    pub fn whole(&mut self, field: &str, given: impl Into<u64>, range: Range<u64>, unit: &'static str) {
         let given = given.into();
         if !range.contains(&given) {
             let (given, min, max) = (given as f64, *range.start() as f64, *range.end() as f64);
@@ -142,8 +132,8 @@ impl<C: From<ValueError>> Validator<C> {
         }
     }
 
-    /// Checks the length of a text or list; `of` is check it counts, such as `moves`.
-    pub fn length(&mut self, field: &str, given: usize, range: RangeInclusive<usize>, of: &'static str) {
+    /// Checks the length of a text or list; `of` is what it counts, such as `moves`.
+    pub fn length(&mut self, field: &str, given: usize, range: Range<usize>, of: &'static str) {
         if !range.contains(&given) {
             let (min, max) = range.into_inner();
             self.add(field, ValueError::Length { given, min, max, of });

@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 pub struct Interval {
     pub from_s: f64,
     pub to_s: f64,
-    /// Number of intervals that it represents, report one sine period after the previous one.
+    /// Number of intervals that it represents, each one sine period after the previous one.
     pub times: f64,
 }
 

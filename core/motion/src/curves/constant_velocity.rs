@@ -1,9 +1,4 @@
 //! Constant rate and dwell (DESIGN B6).
-//!
-//! ```text
-//! speed  |-------|            constant: from start to end
-//!        |       |_________   dwell: 0
-//! ```
 
 use crate::{
     Curve, Peaks,

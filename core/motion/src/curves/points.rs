@@ -311,18 +311,18 @@ impl Curve for Points {
 }
 
 #[cfg(test)]
-impl Points {
-    fn all_due(&self) -> impl Iterator<Item = (usize, f64, bool)> + '_ {
-        (1..=self.step_count()).filter_map(|k| {
-            let (index, position) = self.piece_of_step(k)?;
-            Some((index, position, self.pieces[index].to > self.pieces[index].from))
-        })
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use super::*;
+
+    impl Points {
+        /// Piece, position and direction of each step.
+        pub(super) fn all_due(&self) -> impl Iterator<Item = (usize, f64, bool)> + '_ {
+            (1..=self.step_count()).filter_map(|k| {
+                let (index, position) = self.piece_of_step(k)?;
+                Some((index, position, self.pieces[index].to > self.pieces[index].from))
+            })
+        }
+    }
 
     fn due(points: &[(f64, f64)], interpolation: Interpolation) -> Vec<(f64, bool)> {
         let curve = Points::new(points, interpolation).unwrap();

@@ -9,6 +9,8 @@ use crate::{
 };
 use core::ops::RangeInclusive;
 
+type Range = RangeInclusive<f64>;
+
 /// A validator of quantities in the units of an axis.
 pub(crate) struct Quantities<'s> {
     mechanics: &'s Mechanics,
@@ -66,17 +68,11 @@ impl<'s> Quantities<'s> {
         self.validator.add(field, cause);
     }
 
-    pub(crate) fn range(
-        &mut self,
-        field: &str,
-        given: f64,
-        range: RangeInclusive<f64>,
-        unit: &'static str,
-    ) -> Option<f64> {
+    pub(crate) fn range(&mut self, field: &str, given: f64, range: Range, unit: &'static str) -> Option<f64> {
         self.validator.range(field, given, range, unit)
     }
 
-    /// A distance in whole steps, rounded half up, not 0; left negative.
+    /// A distance in whole steps, rounded half up, not 0.
     pub(crate) fn distance(&mut self, field: &str, given: &Distance) -> Option<i64> {
         let step_size = given.step_size(self.mechanics);
         self.check(field, given.value(), given.unit(), step_size, limits::STEPS)?;
@@ -93,12 +89,7 @@ impl<'s> Quantities<'s> {
         self.speed_within(field, given, limits::SPEED_STEPS_S)
     }
 
-    pub(crate) fn speed_within(
-        &mut self,
-        field: &str,
-        given: &Speed,
-        range: RangeInclusive<f64>,
-    ) -> Option<f64> {
+    pub(crate) fn speed_within(&mut self, field: &str, given: &Speed, range: Range) -> Option<f64> {
         self.check(field, given.value(), given.unit(), given.step_size(self.mechanics), range)?;
         given.in_steps(self.mechanics).ok()
     }
@@ -110,13 +101,8 @@ impl<'s> Quantities<'s> {
     }
 
     pub(crate) fn jerk(&mut self, field: &str, given: &Jerk) -> Option<f64> {
-        self.check(
-            field,
-            given.value(),
-            given.unit(),
-            given.step_size(self.mechanics),
-            limits::JERK_STEPS_S3,
-        )?;
+        let step_size = given.step_size(self.mechanics);
+        self.check(field, given.value(), given.unit(), step_size, limits::JERK_STEPS_S3)?;
         given.in_steps(self.mechanics).ok()
     }
 
@@ -153,7 +139,7 @@ impl<'s> Quantities<'s> {
         given: f64,
         unit: &'static str,
         step_size: Result<f64, NoSuchUnit>,
-        range: RangeInclusive<f64>,
+        range: Range,
     ) -> Option<f64> {
         let step_size = self.usable_step_size(field, given, unit, step_size)?;
         self.check_in_own_unit(field, given, step_size, range, unit)
@@ -165,7 +151,7 @@ impl<'s> Quantities<'s> {
         field: &str,
         given: f64,
         step_size: f64,
-        range: RangeInclusive<f64>,
+        range: Range,
         unit: &'static str,
     ) -> Option<f64> {
         self.range(field, given, range.start() * step_size..=range.end() * step_size, unit)

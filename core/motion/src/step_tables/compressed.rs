@@ -34,7 +34,7 @@ use stepscope_peripheral::{
 /// Maximum tolerance of a compressed list.
 pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);
 /// Maximum entries of a list: 64 MB.
-pub(super) const MAX_ENTRIES: usize = 2_000_000;
+const MAX_ENTRIES: usize = 2_000_000;
 /// Maximum work of the search for the fewest entries, in pairs of interval and add: about two seconds, and ten
 /// microseconds per step of the list.
 const WORK: u64 = 1 << 28;
@@ -149,6 +149,7 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
         Ok(Self { windows, writer: Writer::new(format) })
     }
 
+    /// Compresses into the fewest entries; returns the surplus, or `None` if steps are left.
     fn fewest(&mut self) -> Result<Option<u64>, Cause> {
         let mut ready = VecDeque::new();
         let (last, surplus) = self.sections(&mut ready)?;
@@ -172,14 +173,15 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
             if steps.iter().any(|(window, _)| window.high - window.low >= fewest::MAX_WIDTH) {
                 return Ok((last, None));
             }
-            let near =
+            let is_near =
                 |before: u64, window: &Window| window.high.saturating_sub(before) <= format.max_interval();
-            if !near(self.writer.time, first) {
+            if !is_near(self.writer.time, first) {
                 self.writer.wait(first.single_step(self.writer.time, min, format).wait);
             }
             // A section ends before a pause that is longer than any interval.
             let pairs = steps.iter().zip(steps.iter().skip(1));
-            let length = 1 + pairs.take_while(|((before, _), (window, _))| near(before.low, window)).count();
+            let length =
+                1 + pairs.take_while(|((before, _), (window, _))| is_near(before.low, window)).count();
             let is_cut = more && length == steps.len();
             // If some times of the two steps are close enough, another list may not need the wait.
             let may_not_need_wait =
@@ -191,14 +193,8 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
             let Some(left) = work.checked_sub(length as u64) else { return Ok((last, None)) };
             work = left;
             let Some(entries) = section.fewest_entries(is_cut, &mut work) else { return Ok((last, None)) };
-            let mut done = 0;
-            for FoundEntry { count, interval, add } in entries {
-                let entry_steps = steps.get(done..done + count).unwrap_or_default();
-                let right = entry_steps.first().is_some_and(|(_, right)| *right);
-                let windows = entry_steps.iter().map(|(window, _)| window);
-                self.writer.steps(windows, (interval as u64, add, right));
-                (done, last) = (done + count, entry_steps.last().map_or(last, |(window, _)| window.due));
-            }
+            let done = self.writer.entries(&entries, steps);
+            last = steps.get(done.wrapping_sub(1)).map_or(last, |(window, _)| window.due);
             // Only compressed steps count, because the others are searched again in the next section.
             work += WORK_PER_STEP * done as u64;
             cuts += u64::from(is_cut || done < length) + 2 * u64::from(may_not_need_wait);
@@ -288,6 +284,13 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
     }
 }
 
+pub(super) fn check_entries(count: usize) -> Result<(), Cause> {
+    if count <= MAX_ENTRIES {
+        return Ok(());
+    }
+    Err(ValueError::too_much(count as u64, MAX_ENTRIES as u64, "entries").into())
+}
+
 struct Writer {
     format: EntryFormat,
     segments: Vec<Segment>,
@@ -308,12 +311,19 @@ impl Writer {
     }
 
     fn check_length(&self) -> Result<(), Cause> {
-        if self.segments.len() > MAX_ENTRIES {
-            return Err(
-                ValueError::too_much(self.segments.len() as u64, MAX_ENTRIES as u64, "entries").into()
-            );
+        check_entries(self.segments.len())
+    }
+
+    /// Writes the entries of the first of `steps`; returns how many these are.
+    fn entries(&mut self, entries: &[FoundEntry], steps: &[(Window, bool)]) -> usize {
+        let mut done = 0;
+        for &FoundEntry { count, interval, add } in entries {
+            let entry_steps = steps.get(done..done + count).unwrap_or_default();
+            let right = entry_steps.first().is_some_and(|(_, right)| *right);
+            self.steps(entry_steps.iter().map(|(window, _)| window), (interval as u64, add, right));
+            done += count;
         }
-        Ok(())
+        done
     }
 
     fn steps<'w>(

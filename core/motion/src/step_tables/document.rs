@@ -8,7 +8,7 @@ use crate::{
     curves::{sine_segments::SineSegments, staircase_table::StaircaseTable, trapezoid_table::TrapezoidTable},
     problem::{Cause, ValueError},
     round_half_up,
-    step_tables::{compressed::MAX_ENTRIES, entry_format::EntryFormat, segments::START},
+    step_tables::{compressed::check_entries, entry_format::EntryFormat, segments::START},
 };
 use alloc::{boxed::Box, vec::Vec};
 use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
@@ -139,12 +139,7 @@ impl Table {
             self.add_steps(1, first, rate.right);
             self.add_steps(rate.count - 1, interval, rate.right);
         }
-        if self.segments.len() > MAX_ENTRIES {
-            return Err(
-                ValueError::too_much(self.segments.len() as u64, MAX_ENTRIES as u64, "entries").into()
-            );
-        }
-        Ok(())
+        check_entries(self.segments.len())
     }
 
     fn rounded(&self, cycles: f64) -> u64 {

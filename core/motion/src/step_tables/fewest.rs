@@ -21,6 +21,7 @@
 
 use crate::step_tables::{entry_format::EntryFormat, feasible_window::ceiling, longest::Window};
 use alloc::{vec, vec::Vec};
+use core::ops::RangeInclusive;
 
 /// Maximum width of a window in units, because the work grows with its square.
 pub(super) const MAX_WIDTH: u64 = 1 << 12;
@@ -214,39 +215,44 @@ impl Section {
             return 1;
         };
         let inner = &self.windows[begin.step + 1..end];
-        let (n, low, mut spent) = (count as i64, self.windows[begin.step].low, 1);
+        let (low, mut spent) = (self.windows[begin.step].low, 1);
         for time in window.low..=window.high {
             if next.bits(end).is_some_and(|bits| is_set(bits, time - window.low)) {
                 continue;
             }
-            let passes = times(begin.bits).any(|bit| {
+            let is_reached = times(begin.bits).any(|bit| {
                 spent += 1;
-                let from = low + bit;
-                let lasts = time - from;
-                let odd = match lasts.rem_euclid(n) {
-                    0 => 0,
-                    part if 2 * part == n => 1,
-                    _ => return false,
-                };
-                let (mut min, mut max) = self.adds_of(lasts, n);
-                for (m, window) in (1..).zip(inner) {
-                    let (bend, far) = (n * m * (n - m), 2 * m * lasts);
-                    min = min.max(ceiling(far - 2 * n * (window.high - from), bend));
-                    max = max.min((far - 2 * n * (window.low - from)).div_euclid(bend));
-                }
-                // With an even count every second add has an integer interval.
-                if n % 2 == 0 && (min - odd).rem_euclid(2) == 1 { min < max } else { min <= max }
+                self.has_short_entry(low + bit, time, inner)
             });
-            if passes {
+            if is_reached {
                 next.set(end, window, (time, time));
             }
         }
         spent
     }
 
-    fn adds_of(&self, lasts: i64, n: i64) -> (i64, i64) {
-        // Their mean is lasts/n, and the outer ones differ from it by half of n - 1 adds.
-        let room = (lasts - n * self.min_interval).min(n * self.max_interval - lasts);
+    /// Whether an entry goes from a time through the inner windows to a time after them.
+    fn has_short_entry(&self, from: i64, time: i64, inner: &[StepWindow]) -> bool {
+        let (n, duration) = (inner.len() as i64 + 1, time - from);
+        let odd = match duration.rem_euclid(n) {
+            0 => 0,
+            part if 2 * part == n => 1,
+            _ => return false,
+        };
+        let (mut min, mut max) = self.adds_of(duration, n);
+        for (m, window) in (1..).zip(inner) {
+            let (bend, far) = (n * m * (n - m), 2 * m * duration);
+            min = min.max(ceiling(far - 2 * n * (window.high - from), bend));
+            max = max.min((far - 2 * n * (window.low - from)).div_euclid(bend));
+        }
+        // With an even count every second add has an integer interval.
+        if n % 2 == 0 && (min - odd).rem_euclid(2) == 1 { min < max } else { min <= max }
+    }
+
+    /// The adds of `n` steps whose first and last intervals are in range.
+    fn adds_of(&self, duration: i64, n: i64) -> (i64, i64) {
+        // The mean interval is duration/n, and the outer ones differ from it by half of n - 1 adds.
+        let room = (duration - n * self.min_interval).min(n * self.max_interval - duration);
         let max = (2 * room).div_euclid(n * (n - 1));
         ((-max).max(self.format.min_add()), max.min(self.format.max_add()))
     }
@@ -309,12 +315,7 @@ impl Section {
         Some(StartTimes { step: begin.step, bits: exits, first: here + first?, last: here + last })
     }
 
-    fn adds(
-        &self,
-        begin: StartTimes<'_>,
-        count: usize,
-        target: StepWindow,
-    ) -> core::ops::RangeInclusive<i64> {
+    fn adds(&self, begin: StartTimes<'_>, count: usize, target: StepWindow) -> RangeInclusive<i64> {
         let half = count / 2;
         let (n, h) = (count as i128, half as i128);
         // The add of a parabola through the start, `near` after `half` steps, and `far` after `count` steps, times `over`.
@@ -336,7 +337,7 @@ impl Section {
         count: usize,
         target: StepWindow,
         add: i64,
-    ) -> core::ops::RangeInclusive<i64> {
+    ) -> RangeInclusive<i64> {
         let grows = add * (count as i64 - 1);
         let mut min = self.min_interval.max(self.min_interval - grows);
         let mut max = self.max_interval.min(self.max_interval - grows);

@@ -69,6 +69,25 @@ pub(super) struct LookAhead {
     from: u64,
 }
 
+/// A search for the longest entry.
+#[derive(Clone, Copy)]
+struct Search {
+    /// The longest entry that passed a replay.
+    accepted: LongestEntry,
+    /// The longest entry whose samples have passed, and the shortest one that was refused.
+    sampled: usize,
+    refused: usize,
+    add: Option<i64>,
+    /// The next length to test.
+    next: usize,
+}
+
+impl Search {
+    fn middle(&self) -> usize {
+        self.sampled + (self.refused - self.sampled) / 2
+    }
+}
+
 impl LookAhead {
     pub(super) fn new(format: EntryFormat, min_cycles: u64) -> Self {
         Self {
@@ -131,57 +150,47 @@ impl LookAhead {
         if first.wait > 0 {
             return Ok(Some(first));
         }
-        // The longest entry after a replay, and the lengths that the samples accept and refuse.
-        let (mut accepted, mut sampled, mut refused) = (first, 1, max_count + 1);
-        let mut add = None;
-        let mut n = guess + guess / 8;
+        let next = guess + guess / 8;
+        let mut search = Search { accepted: first, sampled: 1, refused: max_count + 1, add: None, next };
         loop {
-            let top = refused - 1;
-            if sampled < top {
-                n = n.clamp(sampled + 1, top);
+            let Search { accepted, sampled, refused, add, next } = search;
+            if sampled + 1 < refused {
+                let n = next.clamp(sampled + 1, refused - 1);
                 read(self, n)?;
-                let available = self.left().len();
-                if available < n {
-                    (refused, n) = (available + 1, available.max(1));
-                    continue;
-                }
-                match self.fit(n, add, Goal::Any) {
-                    Some(fit) => {
-                        (sampled, add) = (n, Some(fit.add));
-                        n = if refused > max_count {
-                            n + n / 4 + 1
-                        } else {
-                            sampled + (refused - sampled) / 2
-                        };
-                    }
-                    None => {
-                        refused = n;
-                        n = if sampled > accepted.count {
-                            sampled + (refused - sampled) / 2
-                        } else {
-                            n - n / 8 - 1
-                        };
-                    }
-                }
-                continue;
-            }
-            if sampled == accepted.count {
-                // With integer intervals and no tolerance, every entry begins in a due cycle.
-                let limited =
-                    sampled == max_count || self.ends_with(sampled) || self.format.fraction_bits == 0;
-                let count = if limited || !self.is_tight(sampled) { sampled } else { sampled - sampled / 8 };
-                return Ok(Some(LongestEntry { count, ..accepted }));
-            }
-            match self.replay(sampled, add) {
-                Some(longest) => accepted = longest,
-                None => {
-                    refused = sampled;
-                    n = sampled - sampled / 16 - 1;
-                    sampled = accepted.count;
-                    add = None;
-                }
+                self.sample(&mut search, n, max_count);
+            } else if sampled == accepted.count {
+                return Ok(Some(self.with_good_end(accepted, max_count)));
+            } else if let Some(longest) = self.replay(sampled, add) {
+                search.accepted = longest;
+            } else {
+                let next = sampled - sampled / 16 - 1;
+                search = Search { accepted, sampled: accepted.count, refused: sampled, add: None, next };
             }
         }
+    }
+
+    /// Tests an entry of `n` steps with its samples.
+    fn sample(&mut self, search: &mut Search, n: usize, max_count: usize) {
+        let available = self.left().len();
+        if available < n {
+            (search.refused, search.next) = (available + 1, available.max(1));
+        } else if let Some(fit) = self.fit(n, search.add, Goal::Any) {
+            (search.sampled, search.add) = (n, Some(fit.add));
+            search.next = if search.refused > max_count { n + n / 4 + 1 } else { search.middle() };
+        } else {
+            search.refused = n;
+            let has_samples = search.sampled > search.accepted.count;
+            search.next = if has_samples { search.middle() } else { n - n / 8 - 1 };
+        }
+    }
+
+    /// Shortens an entry that would end in a single cycle. With integer intervals and no tolerance that is useless, because
+    /// every entry begins in a due cycle.
+    fn with_good_end(&self, entry: LongestEntry, max_count: usize) -> LongestEntry {
+        let count = entry.count;
+        let is_limited = count == max_count || self.ends_with(count) || self.format.fraction_bits == 0;
+        let count = if is_limited || !self.is_tight(count) { count } else { count - count / 8 };
+        LongestEntry { count, ..entry }
     }
 
     fn single_step(&self) -> Option<LongestEntry> {

@@ -263,7 +263,7 @@ fn cosine(draw: &mut Draw) -> (Move, Ideal) {
 }
 
 #[test]
-fn coevery_step_of_sines_is_in_its_cycle() {
+fn every_step_of_cosines_is_in_its_cycle() {
     compare(3, "cosine", BY_BLOCKS, cosine);
 }
 

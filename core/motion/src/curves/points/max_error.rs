@@ -42,7 +42,7 @@ pub(super) fn max_errors(pieces: &[Cubic], is_smooth: bool) -> Vec<MaxError> {
 mod tests {
     use super::*;
 
-    /// Compares the errors of pieces (length in s, end in steps) with factors of those of a curve of `last_s` and `max_distance`.
+    /// Compares the errors of pieces (length in s, end in steps) with factors of those of the whole curve.
     fn check(pieces: &[(f64, f64)], is_smooth: bool, (last_s, max_distance): (f64, f64), expected: &[f64]) {
         let ((mut from_s, mut from), mut cubics) = ((0.0, 0.0), Vec::new());
         for &(length_s, to) in pieces {

@@ -159,7 +159,7 @@ fn refuses_a_rate_above_the_maximum_by_more_than_a_rounding() {
 }
 
 #[test]
-fn the_highest_rate_is_that_of_the_fastest_slice_whole_or_not() {
+fn top_rate_includes_a_shorter_last_slice() {
     let mut noise = Xoshiro256StarStar::seed_from_u64(3);
     let mut draw =
         |from: f64, to: f64| from + (to - from) * (noise.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;

@@ -88,7 +88,7 @@ mod tests {
                 &["points: 1000000000000 s is out of range; use 1e-6 to 86400 s"],
             ),
             (PointUnit::Steps, vec![(5.0, 3.0), (5.5, 4.0)], &[]),
-            (PointUnit::Steps, vec![(0.0, 0.0)], &["points: 1 points; use 2 to 4096"]),
+            (PointUnit::Steps, vec![(0.0, 0.0)], &["points: 1 point; use 2 to 4096"]),
             (PointUnit::Steps, vec![(0.0, 0.0); MAX_POINTS + 1], &["points: 4097 points; use 2 to 4096"]),
             (
                 PointUnit::Millimeters,
