@@ -76,13 +76,11 @@ pub struct ChannelCommand {
 
 impl ChannelCommand {
     /// Steps to the right, 0 to the slots per tick.
-    #[must_use]
     pub const fn right(steps: u8) -> Self {
         Self { right: true, steps }
     }
 
     /// Steps to the left, 0 to the slots per tick.
-    #[must_use]
     pub const fn left(steps: u8) -> Self {
         Self { right: false, steps }
     }

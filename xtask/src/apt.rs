@@ -4,21 +4,21 @@ use anyhow::{Context, Result, bail};
 use tokio::process::Command;
 use tokio::sync::Mutex;
 
-use crate::aside::say;
+use crate::output_buffer::print_line;
 use crate::run;
 
-/// apt allows one installation at a time, and two steps may need one at once.
+/// apt allows one installation at a time, but two steps may run in parallel.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
 
-/// Installs `packages` if that needs no password and no question.
+/// Installs `packages`; an error unless this is possible without a password.
 pub(crate) async fn install(packages: &[&str]) -> Result<()> {
     let names = packages.join(" and ");
     let apt = match which::which("apt-get") {
         Ok(apt) if is_root() => apt,
-        _ => bail!("{names} can be installed from here only by root and with apt-get"),
+        _ => bail!("installing {names} needs apt-get and root"),
     };
     let _turn = ONE_AT_A_TIME.lock().await;
-    say(format_args!("installing {names}"));
+    print_line(format_args!("installing {names}"));
     let apt = |arguments: &[&str]| {
         let mut command = Command::new(&apt);
         command.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
@@ -32,7 +32,9 @@ pub(crate) async fn install(packages: &[&str]) -> Result<()> {
 pub(crate) async fn require(what: &str, programs: &[&str], packages: &[&str]) -> Result<()> {
     let remedy = || {
         let (programs, packages) = (programs.join(", "), packages.join(" "));
-        format!("{what} needs {programs} on PATH: install it (Debian: `apt-get install {packages}` as root)")
+        format!(
+            "{what} needs {programs} on PATH: install them (Debian: `apt-get install {packages}` as root)"
+        )
     };
     let found = || programs.iter().try_for_each(|program| which::which(program).map(drop));
     if found().is_err() {

@@ -13,7 +13,7 @@ use anyhow::{Context, Result};
 use tokio::process::Command;
 use tokio::sync::oneshot;
 
-use crate::run;
+use crate::{files, run};
 
 /// A dying program may still write to its folder, so removing the folder is tried again for this time.
 const CLEARING: Duration = Duration::from_secs(5);
@@ -34,17 +34,17 @@ impl Drop for Folder {
 }
 
 pub(crate) async fn attend(words: &[OsString]) -> Result<()> {
-    let (program, arguments) = words.split_first().context("name a program")?;
+    let (program, arguments) = words.split_first().context("no program given")?;
     let folder = Folder(std::env::temp_dir().join(format!("stepscope-attend-{}", std::process::id())));
-    std::fs::create_dir_all(&folder.0).with_context(|| format!("{} can't be made", folder.0.display()))?;
+    files::create_folder(&folder.0)?;
     let mut command = Command::new(program);
     command.args(arguments).env("TMPDIR", &folder.0);
     let mut group = run::start(command)?;
     tokio::select! {
         () = end_of_input() => {}
-        ended = group.ended() => return ended,
+        result = group.wait() => return result,
     }
-    group.end().await
+    group.kill().await
 }
 
 /// Not a task of the runtime: the runtime would wait for it at the end.

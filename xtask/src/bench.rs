@@ -1,10 +1,9 @@
 //! `cargo xtask bench`: criterion's time of each kernel, and ratios between kernels and between native code and the
 //! browser.
 //!
-//! A busy machine changes its speed from second to second, so a single time says little. The ratios come from blocks:
-//! in each, a native process and then the page call all kernels in turn. Other programs only add time, so the best
-//! call of a kernel in a block counts. The table gives the median of the blocks' ratios and their median absolute
-//! deviation.
+//! The speed of a busy machine varies from second to second, so the ratios come from blocks: in each, a native process and
+//! then the page call all kernels in turn. Other programs only add time, so the best call of a kernel in a block counts.
+//! The table has the median of the blocks' ratios and their median absolute deviation.
 //!
 //! With `--against`, blocks of an earlier commit, built in a clone, alternate with those of the working tree.
 
@@ -12,15 +11,14 @@ mod page;
 mod published;
 mod table;
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use tokio::process::Command;
 
 use crate::browser::Browser;
-use crate::tools::{Optimise, WasmTools};
-use crate::{root, run, steps, toolchain};
+use crate::tools::{Optimize, WasmTools};
+use crate::{files, root, run, steps, toolchain};
 use page::Page;
 use table::{Block, Estimate, Report};
 
@@ -56,7 +54,7 @@ const QUICK: Effort = Effort {
 pub(crate) async fn run(quick: bool) -> Result<()> {
     let effort = if quick { QUICK } else { FULL };
     let browser = Browser::ready().await?;
-    let tools = WasmTools::ready(Optimise::Yes).await?;
+    let tools = WasmTools::ready(Optimize::Yes).await?;
     let tree = Tree::here();
     tree.build(&tools).await?;
     criterion(&tree.home.join("criterion"), effort.criterion).await?;
@@ -69,23 +67,23 @@ pub(crate) async fn run(quick: bool) -> Result<()> {
     }
     print!("\n{}", table::tables(&blocks, |kernel| estimate(&tree.home.join("criterion"), kernel))?);
     println!(
-        "\nTimes are criterion's medians ± their median absolute deviation. Ratios are of speeds, a unit each: of the \
+        "\nTimes are criterion's medians ± their median absolute deviation. Ratios compare speeds per unit: of the \
          best calls in a block of {} rounds,\nthe median of {} blocks ± its median absolute deviation.",
         effort.rounds, effort.blocks
     );
     println!("\nThe page in Chromium:");
     let path = tree.home.join("page.json");
     self::page(Some(&path)).await?;
-    let text = std::fs::read_to_string(&path).with_context(|| format!("{} can't be read", path.display()))?;
-    let figures = serde_json::from_str(&text).with_context(|| format!("{} is no JSON", path.display()))?;
-    keep(&tree.home, &table::json(&blocks, None, Some(figures))?)
+    let text = files::read(&path)?;
+    let figures = serde_json::from_str(&text).with_context(|| format!("{} is not JSON", path.display()))?;
+    save(&tree.home, &table::json(&blocks, None, Some(figures))?)
 }
 
 /// Measures the kernels of an earlier commit and of the working tree in turn, and prints the ratios of their speeds.
 pub(crate) async fn against(quick: bool, rev: &str) -> Result<()> {
     let effort = if quick { QUICK } else { FULL };
     let browser = Browser::ready().await?;
-    let tools = WasmTools::ready(Optimise::Yes).await?;
+    let tools = WasmTools::ready(Optimize::Yes).await?;
     let (now, then) = (Tree::here(), Tree::of(rev).await?);
     for tree in [&now, &then] {
         tree.build(&tools).await?;
@@ -99,16 +97,16 @@ pub(crate) async fn against(quick: bool, rev: &str) -> Result<()> {
     }
     print!("\n{}", table::against(&blocks, &before)?);
     println!(
-        "\nRatios are of speeds, now by {rev}: of the best calls in a block of {} rounds, the median of {} blocks ± its \
+        "\nRatios are speeds now divided by those of {rev}: of the best calls in a block of {} rounds, the median of {} blocks ± its \
          median absolute deviation.",
         effort.rounds, effort.blocks
     );
-    keep(&now.home, &table::json(&blocks, Some(&before), None)?)
+    save(&now.home, &table::json(&blocks, Some(&before), None)?)
 }
 
-fn keep(home: &Path, json: &str) -> Result<()> {
+fn save(home: &Path, json: &str) -> Result<()> {
     let path = home.join(RESULTS);
-    std::fs::write(&path, json).with_context(|| format!("{} can't be written", path.display()))?;
+    files::write(&path, json)?;
     println!("As JSON: {}", path.strip_prefix(root()).unwrap_or(&path).display());
     Ok(())
 }
@@ -117,6 +115,7 @@ pub(crate) fn published() -> Result<()> {
     published::write()
 }
 
+/// A working tree and its builds.
 struct Tree {
     root: PathBuf,
     home: PathBuf,
@@ -137,23 +136,22 @@ impl Tree {
             command
         };
         let commit = format!("{rev}^{{commit}}");
-        let asked = git(root(), &["rev-parse", "--quiet", "--verify", &commit]);
-        let commit = run::output(asked).await.with_context(|| {
-            format!("{rev:?} is no commit of this repository; give a name, a tag or the beginning of a hash")
+        let verify = git(root(), &["rev-parse", "--quiet", "--verify", &commit]);
+        let commit = run::output(verify).await.with_context(|| {
+            format!(
+                "{rev:?} is not a commit of this repository; use a branch, a tag or the beginning of a hash"
+            )
         })?;
         let commit = commit.trim();
         let home = root().join("target").join("bench").join("against");
         let tree = home.join("tree");
-        let standing = match tree.exists() {
+        let checked_out = match tree.exists() {
             true => run::output(git(&tree, &["rev-parse", "HEAD"])).await.unwrap_or_default(),
             false => String::new(),
         };
-        if standing.trim() != commit {
-            if tree.exists() {
-                std::fs::remove_dir_all(&tree)
-                    .with_context(|| format!("{} can't be removed", tree.display()))?;
-            }
-            std::fs::create_dir_all(&home).with_context(|| format!("{} can't be made", home.display()))?;
+        if checked_out.trim() != commit {
+            files::remove_folder(&tree)?;
+            files::create_folder(&home)?;
             let mut clone = git(&home, &["clone", "--quiet", "--shared", "--no-checkout"]);
             clone.arg(root()).arg(&tree);
             run::to_end(clone).await?;
@@ -163,7 +161,8 @@ impl Tree {
         Ok(Self { root: tree, target: Some(home.join("target")), home })
     }
 
-    fn at_home(&self, mut command: Command) -> Command {
+    /// Runs a command in this tree.
+    fn in_tree(&self, mut command: Command) -> Command {
         command.current_dir(&self.root);
         if let Some(target) = &self.target {
             command.env("CARGO_TARGET_DIR", target);
@@ -176,11 +175,10 @@ impl Tree {
     }
 
     async fn build(&self, tools: &WasmTools) -> Result<()> {
-        std::fs::create_dir_all(&self.home)
-            .with_context(|| format!("{} can't be made", self.home.display()))?;
-        let call = self.at_home(tools.wasm_pack()?);
-        crate::page::wasm_by(tools, call, FOLDER, &self.package(), &[]).await?;
-        run::compile(self.at_home(kernels(&["--no-run"]))).await
+        files::create_folder(&self.home)?;
+        let call = self.in_tree(tools.wasm_pack()?);
+        crate::page::build_wasm(tools, call, FOLDER, &self.package(), &[]).await?;
+        run::compile(self.in_tree(kernels(&["--no-run"]))).await
     }
 
     async fn page(&self, browser: &Browser) -> Result<Page> {
@@ -193,12 +191,11 @@ impl Tree {
 
     async fn native(&self, rounds: u32) -> Result<Vec<Report>> {
         let path = self.home.join("native.json");
-        let file = File::create(&path).with_context(|| format!("{} can't be written", path.display()))?;
-        let mut command = self.at_home(kernels(&["--quiet"]));
+        let file = files::create(&path)?;
+        let mut command = self.in_tree(kernels(&["--quiet"]));
         command.args(["--rounds", &rounds.to_string()]).stdout(file);
         run::within(command, run::LIMIT).await?;
-        let text =
-            std::fs::read_to_string(&path).with_context(|| format!("{} can't be read", path.display()))?;
+        let text = files::read(&path)?;
         Report::all_from_json(&text)
     }
 }
@@ -220,9 +217,7 @@ pub(crate) async fn live() -> Result<()> {
 
 async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
     // Criterion would only compare with the results of an earlier run.
-    if home.exists() {
-        std::fs::remove_dir_all(home).with_context(|| format!("{} can't be removed", home.display()))?;
-    }
+    files::remove_folder(home)?;
     let mut command = kernels(&[]);
     command.args(["--noplot", "--quiet"]).args(effort).env("CRITERION_HOME", home);
     run::to_end(command).await
@@ -230,8 +225,8 @@ async fn criterion(home: &Path, effort: [&str; 6]) -> Result<()> {
 
 fn estimate(home: &Path, kernel: &str) -> Result<Estimate> {
     let file = home.join("kernels").join(kernel).join("new").join("estimates.json");
-    let text = std::fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
-    Estimate::from_json(&text).with_context(|| format!("{} is not what it should be", file.display()))
+    let text = files::read(&file)?;
+    Estimate::from_json(&text).with_context(|| format!("{} is invalid", file.display()))
 }
 
 fn kernels(options: &[&str]) -> Command {

@@ -6,20 +6,20 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 
 use crate::apt;
-use crate::aside::say;
-use crate::tools::version_answer;
+use crate::output_buffer::print_line;
+use crate::tools::version_output;
 
 pub(crate) struct Browser {
     pub(crate) chromium: PathBuf,
     pub(crate) chromedriver: PathBuf,
 }
 
-/// Environment variables that name the programs if PATH does not; the tests read them, too.
+/// Environment variables with paths of the programs, if they are not on PATH; the tests read them, too.
 pub(crate) const CHROMIUM: &str = "STEPSCOPE_CHROMIUM";
 pub(crate) const CHROMEDRIVER: &str = "STEPSCOPE_CHROMEDRIVER";
 
 impl Browser {
-    /// Finds both, or installs them if that needs no question.
+    /// Finds both, or installs them.
     pub(crate) async fn ready() -> Result<Self> {
         if let Some(found) = Self::find() {
             return Ok(found);
@@ -39,10 +39,10 @@ impl Browser {
             && self.chromium.ends_with("chromium")
             && let Err(why) = apt::install(&["chromium-headless-shell"]).await
         {
-            say(format_args!("without Chromium's headless shell the tests take longer: {why:#}"));
+            print_line(format_args!("without Chromium's headless shell the tests take longer: {why:#}"));
         }
         match find() {
-            Some(shell) if fits(&shell, &self.chromedriver).await => shell,
+            Some(shell) if have_same_version(&shell, &self.chromedriver).await => shell,
             _ => self.chromium.clone(),
         }
     }
@@ -58,10 +58,10 @@ impl Browser {
 }
 
 /// Compares major versions, as in `Chromium 156.0.8078.79`.
-async fn fits(shell: &Path, driver: &Path) -> bool {
+async fn have_same_version(shell: &Path, driver: &Path) -> bool {
     let major = async |program: &Path| {
-        let answer = version_answer(program).await?;
-        let mut numbers = answer.split_whitespace().filter_map(|word| word.split_once('.'));
+        let output = version_output(program).await?;
+        let mut numbers = output.split_whitespace().filter_map(|word| word.split_once('.'));
         numbers.find_map(|(major, _)| major.parse::<u32>().ok())
     };
     match (major(shell).await, major(driver).await) {
@@ -77,7 +77,7 @@ fn on_path(names: &[&str]) -> Option<PathBuf> {
 fn remedy() -> String {
     format!(
         "the browser tests need Chromium (or Chrome) and the chromedriver of the same version: install both \
-         (Debian: `apt-get install chromium chromium-driver` as root) so that they are on PATH, or name them in \
+         (Debian: `apt-get install chromium chromium-driver` as root) so that they are on PATH, or set \
          {CHROMIUM} and {CHROMEDRIVER}"
     )
 }

@@ -7,11 +7,11 @@
 //! | `docs/` | the documentation, as a site of its own |
 //! | `_headers` | `web/_headers` and the rules for caching |
 //!
-//! Only pages and the manifest name files that no script imports, so new names are written there alone. The result
+//! Only pages and the manifest reference files that no script imports, so the new names are written only there. The result
 //! depends only on the files and the commit.
 
 mod esbuild;
-mod licences;
+mod licenses;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -20,39 +20,42 @@ use anyhow::{Context, Result, ensure};
 use twox_hash::XxHash64;
 use walkdir::WalkDir;
 
-use crate::{docs, headers, root, run};
+use crate::{docs, files, headers, root, run};
 use esbuild::Bundles;
 
 const ASSETS: &str = "assets";
 const PAGE: &str = "index.html";
-/// The service worker holds the list of files.
+/// Contains the list of files.
 const SERVICE_WORKER: &str = "sw.js";
-const LICENCES: &str = "licenses.html";
-/// The placeholder in the sources that the build replaces.
-const UNBUILT: &str = "development";
-const UNLISTED: &str = "const build = { id: \"development\", files: [] };";
+const LICENSES: &str = "licenses.html";
+/// Placeholders in the sources that the build replaces: its name, and the list in the service worker.
+const BUILD_PLACEHOLDER: &str = "development";
+const LIST_PLACEHOLDER: &str = "const build = { id: \"development\", files: [] };";
 
 pub(crate) fn folder() -> PathBuf {
     root().join("dist")
 }
 
+/// The files of a build.
 #[derive(Debug, Default)]
 pub(crate) struct Parts {
+    /// Files that load when the page opens.
     pub(crate) opening: BTreeSet<String>,
-    /// What loads later, by the page or the source that needs it.
+    /// Files that load later, by the page or source that needs them.
     pub(crate) later: BTreeMap<String, BTreeSet<String>>,
 }
 
+/// Builds the page of the folder `web` into the folder `dist`.
 pub(crate) async fn make(web: &Path, dist: &Path) -> Result<Parts> {
     let mut site = Site::read(web)?;
-    site.texts.insert(LICENCES.to_owned(), licences::page().await?);
+    site.texts.insert(LICENSES.to_owned(), licenses::page().await?);
     let sources = site.sources();
     clear(dist)?;
     let bundles = Bundles::make(web, &sources, site.script()?, dist).await?;
     let commit = commit().await;
-    for (name, text) in site.built(&bundles, env!("CARGO_PKG_VERSION"), commit.as_deref())? {
+    for (name, text) in site.texts_of_build(&bundles, env!("CARGO_PKG_VERSION"), commit.as_deref())? {
         let file = dist.join(name);
-        std::fs::write(&file, text).with_context(|| format!("{} can't be written", file.display()))?;
+        files::write(&file, text)?;
     }
     docs::build(&dist.join(docs::FOLDER))?;
     Ok(site.parts(&bundles))
@@ -70,18 +73,19 @@ async fn commit() -> Option<String> {
     Some(format!("{}{}", name.trim(), if changes.is_empty() { "" } else { "+" }))
 }
 
+/// The sources that reference others: pages, manifest and service worker.
 struct Site {
     texts: BTreeMap<String, String>,
     headers: String,
 }
 
-fn names_others(file: &str) -> bool {
+fn is_page(file: &str) -> bool {
     file.ends_with(".html") || file.ends_with(".webmanifest")
 }
 
-/// Where a page or the manifest names a file that loads with it.
-const AT_ONCE: [&str; 4] = ["href=\"", "src=\"", "data-worker=\"", "\"src\": \""];
-/// Where a page names a file that its scripts request later; the files of one row load together.
+/// Attributes with files that load with the page or the manifest.
+const IMMEDIATE: [&str; 4] = ["href=\"", "src=\"", "data-worker=\"", "\"src\": \""];
+/// Attributes with files that scripts of the page request later; the files of one row load together.
 const LATER: [&[&str]; 4] = [
     &["data-study-worker=\"", "data-tools-core=\"", "data-study-style=\""],
     &["data-capture-worker=\"", "data-tools-core=\""],
@@ -89,13 +93,14 @@ const LATER: [&[&str]; 4] = [
     &["data-live-worker=\"", "data-tools-core=\"", "data-live-style=\""],
 ];
 
-fn named(text: &str) -> impl Iterator<Item = &str> {
-    files_at(text, &AT_ONCE).chain(LATER.iter().flat_map(move |places| files_at(text, places)))
+/// All files that a page references.
+fn references(text: &str) -> impl Iterator<Item = &str> {
+    references_in(text, &IMMEDIATE).chain(LATER.iter().flat_map(move |row| references_in(text, row)))
 }
 
-/// `./`, the page's own address, and the documentation are skipped.
-fn files_at<'a>(text: &'a str, places: &'a [&str]) -> impl Iterator<Item = &'a str> {
-    let values = places.iter().flat_map(|place| text.split(place).skip(1));
+/// The files in these attributes, except `./`, the page itself, and the documentation.
+fn references_in<'a>(text: &'a str, attributes: &'a [&str]) -> impl Iterator<Item = &'a str> {
+    let values = attributes.iter().flat_map(|attribute| text.split(attribute).skip(1));
     let addresses = values.filter_map(|rest| rest.split('"').next()).filter(|address| !address.contains(':'));
     addresses
         .filter_map(|address| address.split(['#', '?']).next())
@@ -106,13 +111,13 @@ impl Site {
     fn read(web: &Path) -> Result<Self> {
         let read = |name: &str| {
             let file = web.join(name);
-            std::fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))
+            files::read(&file)
         };
         let mut texts = BTreeMap::new();
         for entry in WalkDir::new(web).max_depth(1) {
             let entry = entry.with_context(|| format!("{} can't be read", web.display()))?;
             let name = entry.file_name().to_string_lossy().into_owned();
-            if entry.file_type().is_file() && (names_others(&name) || name == SERVICE_WORKER) {
+            if entry.file_type().is_file() && (is_page(&name) || name == SERVICE_WORKER) {
                 let text = read(&name)?;
                 texts.insert(name, text);
             }
@@ -120,69 +125,82 @@ impl Site {
         Ok(Self { texts, headers: read(headers::FILE)? })
     }
 
-    fn naming(&self) -> impl Iterator<Item = (&str, &str)> {
-        let texts = self.texts.iter().filter(|(name, _)| names_others(name));
+    /// Names and texts of the pages and the manifest.
+    fn pages(&self) -> impl Iterator<Item = (&str, &str)> {
+        let texts = self.texts.iter().filter(|(name, _)| is_page(name));
         texts.map(|(name, text)| (name.as_str(), text.as_str()))
     }
 
+    /// The files that pages reference, except other pages.
     fn sources(&self) -> BTreeSet<&str> {
-        self.naming().flat_map(|(_, text)| named(text)).filter(|file| !names_others(file)).collect()
+        self.pages().flat_map(|(_, text)| references(text)).filter(|file| !is_page(file)).collect()
     }
 
+    /// The main script of the page.
     fn script(&self) -> Result<&str> {
         let page = self.texts.get(PAGE).map_or("", String::as_str);
-        files_at(page, &["src=\""]).next().with_context(|| format!("{PAGE} names no script"))
+        references_in(page, &["src=\""]).next().with_context(|| format!("{PAGE} references no script"))
     }
 
-    fn wanted<'a>(&self, name: &str, places: &[&str], bundles: &'a Bundles) -> BTreeSet<&'a str> {
+    /// The built files for these attributes of a page.
+    fn bundles_in<'a>(&self, name: &str, attributes: &[&str], bundles: &'a Bundles) -> BTreeSet<&'a str> {
         let text = self.texts.get(name).map_or("", String::as_str);
-        files_at(text, places).filter_map(|source| bundles.of(source)).collect()
+        references_in(text, attributes).filter_map(|source| bundles.file_of(source)).collect()
     }
 
-    fn built(
+    /// The texts of the build, by name.
+    fn texts_of_build(
         &self,
         bundles: &Bundles,
         version: &str,
         commit: Option<&str>,
     ) -> Result<BTreeMap<String, String>> {
         let mut built = self.texts.clone();
-        for (name, text) in self.naming() {
-            built.insert(name.to_owned(), self.renamed(name, text, bundles)?);
+        for (name, text) in self.pages() {
+            built.insert(name.to_owned(), self.with_new_names(name, text, bundles)?);
         }
         // Without a commit the hash of the files identifies the build.
-        let own = format!("{:08x}", hash_of(&built) >> 32);
+        let short_hash = format!("{:08x}", content_hash(&built) >> 32);
         let page = built.get_mut(PAGE).with_context(|| format!("there is no {PAGE}"))?;
-        *page = unindented(&stamped(page, &format!("{version} ({})", commit.unwrap_or(&own)))?);
-        let id = format!("{:016x}", hash_of(&built));
+        *page = without_indentation(&with_build_name(
+            page,
+            &format!("{version} ({})", commit.unwrap_or(&short_hash)),
+        )?);
+        let build_id = format!("{:016x}", content_hash(&built));
         let entries = built.keys().map(|name| if name == PAGE { "./" } else { name });
         let files: Vec<&str> =
             bundles.files().chain(entries.filter(|name| *name != SERVICE_WORKER)).collect();
-        let list = format!("const build = {{ id: \"{id}\", files: {} }};", serde_json::to_string(&files)?);
-        let headers = self.rules(built.keys().map(String::as_str));
+        let list =
+            format!("const build = {{ id: \"{build_id}\", files: {} }};", serde_json::to_string(&files)?);
+        let headers = self.headers_of_build(built.keys().map(String::as_str));
         if let Some(worker) = built.get_mut(SERVICE_WORKER) {
-            ensure!(worker.matches(UNLISTED).count() == 1, "{SERVICE_WORKER} must hold once: {UNLISTED}");
-            *worker = without_comments(worker).replace(UNLISTED, &list);
+            ensure!(
+                worker.matches(LIST_PLACEHOLDER).count() == 1,
+                "{SERVICE_WORKER} must contain once: {LIST_PLACEHOLDER}"
+            );
+            *worker = without_comments(worker).replace(LIST_PLACEHOLDER, &list);
         }
         built.insert(headers::FILE.to_owned(), headers);
         Ok(built)
     }
 
-    /// Puts in the new names, and links by which the browser loads a page's modules in parallel.
-    fn renamed(&self, name: &str, text: &str, bundles: &Bundles) -> Result<String> {
+    /// A page with the new names of files, and with links that load its modules in parallel.
+    fn with_new_names(&self, name: &str, text: &str, bundles: &Bundles) -> Result<String> {
         let mut renamed = text.to_owned();
-        for file in named(text).collect::<BTreeSet<_>>() {
-            if names_others(file) {
-                ensure!(self.texts.contains_key(file), "{name} names {file}, which is not there");
+        for file in references(text).collect::<BTreeSet<_>>() {
+            if is_page(file) {
+                ensure!(self.texts.contains_key(file), "{name} references {file}, which does not exist");
             } else {
-                let made =
-                    bundles.of(file).with_context(|| format!("{name} names {file}, which is not made"))?;
+                let made = bundles
+                    .file_of(file)
+                    .with_context(|| format!("{name} references {file}, which is not built"))?;
                 renamed = renamed.replace(&format!("\"{file}\""), &format!("\"{made}\""));
             }
         }
-        let modules: BTreeSet<&str> = files_at(text, &AT_ONCE)
+        let modules: BTreeSet<&str> = references_in(text, &IMMEDIATE)
             .filter(|file| file.ends_with(".js"))
-            .filter_map(|source| bundles.of(source))
-            .flat_map(|file| bundles.at_once(file))
+            .filter_map(|source| bundles.file_of(source))
+            .flat_map(|file| bundles.with_imports(file))
             .filter(|file| !renamed.contains(file))
             .collect();
         let links: String =
@@ -191,29 +209,29 @@ impl Site {
     }
 
     fn parts(&self, bundles: &Bundles) -> Parts {
-        let with = |files: BTreeSet<&str>| -> BTreeSet<String> {
-            files.into_iter().flat_map(|file| bundles.at_once(file)).map(str::to_owned).collect()
+        let with_imports = |files: BTreeSet<&str>| -> BTreeSet<String> {
+            files.into_iter().flat_map(|file| bundles.with_imports(file)).map(str::to_owned).collect()
         };
-        let mut opening = with(self.wanted(PAGE, &AT_ONCE, bundles));
+        let mut opening = with_imports(self.bundles_in(PAGE, &IMMEDIATE, bundles));
         opening.extend([PAGE.to_owned(), SERVICE_WORKER.to_owned()]);
         let mut later = BTreeMap::new();
         let page = self.texts.get(PAGE).map_or("", String::as_str);
-        for places in LATER {
-            if let Some(first) = files_at(page, places).next() {
-                later.insert(first.to_owned(), with(self.wanted(PAGE, places, bundles)));
+        for row in LATER {
+            if let Some(first) = references_in(page, row).next() {
+                later.insert(first.to_owned(), with_imports(self.bundles_in(PAGE, row, bundles)));
             }
         }
         for page in self.texts.keys().filter(|name| name.ends_with(".html") && *name != PAGE) {
-            let mut files = with(self.wanted(page, &AT_ONCE, bundles));
+            let mut files = with_imports(self.bundles_in(page, &IMMEDIATE, bundles));
             files.insert(page.clone());
             later.insert(page.clone(), files);
         }
-        let mut waiting = vec![opening.clone()];
-        while let Some(asking) = waiting.pop() {
-            for (source, file) in bundles.later(&asking.iter().map(String::as_str).collect()) {
+        let mut queue = vec![opening.clone()];
+        while let Some(importing) = queue.pop() {
+            for (source, file) in bundles.dynamic_imports(&importing.iter().map(String::as_str).collect()) {
                 if !later.contains_key(source) {
-                    let files = with(BTreeSet::from([file]));
-                    waiting.push(files.clone());
+                    let files = with_imports(BTreeSet::from([file]));
+                    queue.push(files.clone());
                     later.insert(source.to_owned(), files);
                 }
             }
@@ -224,10 +242,10 @@ impl Site {
         Parts { opening, later }
     }
 
-    /// Replaces the rules for caching in `web/_headers`.
-    fn rules<'a>(&self, entries: impl Iterator<Item = &'a str>) -> String {
-        let kept = self.headers.lines().filter(|line| !line.trim_start().starts_with("Cache-Control:"));
-        let mut rules: String = kept.map(|line| format!("{line}\n")).collect();
+    /// `web/_headers` with the rules for caching of the build.
+    fn headers_of_build<'a>(&self, entries: impl Iterator<Item = &'a str>) -> String {
+        let others = self.headers.lines().filter(|line| !line.trim_start().starts_with("Cache-Control:"));
+        let mut rules: String = others.map(|line| format!("{line}\n")).collect();
         rules.push_str(&format!("/{ASSETS}/*\n  Cache-Control: public, max-age=31536000, immutable\n"));
         // The last one is the documentation.
         for entry in entries.chain(["", "docs/*"]) {
@@ -237,12 +255,17 @@ impl Site {
     }
 }
 
-fn stamped(page: &str, build: &str) -> Result<String> {
-    let places = [format!("data-build=\"{UNBUILT}\""), format!("<span id=\"version\">{UNBUILT}</span>")];
+fn with_build_name(page: &str, build: &str) -> Result<String> {
+    let places = [
+        format!("data-build=\"{BUILD_PLACEHOLDER}\""),
+        format!("<span id=\"version\">{BUILD_PLACEHOLDER}</span>"),
+    ];
     for place in &places {
-        ensure!(page.matches(place.as_str()).count() == 1, "{PAGE} must hold once: {place}");
+        ensure!(page.matches(place.as_str()).count() == 1, "{PAGE} must contain once: {place}");
     }
-    Ok(places.iter().fold(page.to_owned(), |page, place| page.replace(place, &place.replace(UNBUILT, build))))
+    Ok(places
+        .iter()
+        .fold(page.to_owned(), |page, place| page.replace(place, &place.replace(BUILD_PLACEHOLDER, build))))
 }
 
 fn without_comments(script: &str) -> String {
@@ -253,29 +276,30 @@ fn without_comments(script: &str) -> String {
     lines.map(|line| format!("{line}\n")).collect()
 }
 
-fn unindented(page: &str) -> String {
+fn without_indentation(page: &str) -> String {
     page.lines().map(|line| format!("{}\n", line.trim_start())).collect()
 }
 
-/// The texts name all other files, whose names contain their hashes; so this covers the whole build.
-fn hash_of(texts: &BTreeMap<String, String>) -> u64 {
-    let mut held = Vec::new();
+/// Covers the whole build: the texts contain the names of all other files, which contain their hashes.
+fn content_hash(texts: &BTreeMap<String, String>) -> u64 {
+    let mut bytes = Vec::new();
     for (name, text) in texts {
-        held.extend_from_slice(name.as_bytes());
-        held.extend_from_slice(&XxHash64::oneshot(0, text.as_bytes()).to_le_bytes());
+        bytes.extend_from_slice(name.as_bytes());
+        bytes.extend_from_slice(&XxHash64::oneshot(0, text.as_bytes()).to_le_bytes());
     }
-    XxHash64::oneshot(0, &held)
+    XxHash64::oneshot(0, &bytes)
 }
 
+/// Removes an earlier build, but no other folder.
 fn clear(dist: &Path) -> Result<()> {
     if dist.exists() {
         ensure!(
-            [dist.join(ASSETS), dist.join(docs::FOLDER).join("index.html")].iter().any(|it| it.exists())
-                || dist.read_dir().is_ok_and(|mut it| it.next().is_none()),
-            "{} is no earlier build; remove it or take another folder",
+            [dist.join(ASSETS), dist.join(docs::FOLDER).join("index.html")].iter().any(|part| part.exists())
+                || dist.read_dir().is_ok_and(|mut entries| entries.next().is_none()),
+            "{} is not an earlier build; remove it, or use another folder",
             dist.display()
         );
-        std::fs::remove_dir_all(dist).with_context(|| format!("{} can't be removed", dist.display()))?;
+        files::remove_folder(dist)?;
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `cargo xtask docs`: the pages that docs/SUMMARY.md lists, as a site without scripts in `dist/docs`.
 //!
-//! Not mdBook: its pages need inline scripts, which the page's security headers forbid.
+//! mdBook cannot be used: its pages need inline scripts, which the page's security headers forbid.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
@@ -8,33 +8,32 @@ use std::path::{Component, Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 
-use crate::root;
+use crate::{files, root};
 
-/// In `dist/`.
+/// Its folder in `dist/`.
 pub(crate) const FOLDER: &str = "docs";
-/// The address by which the page links to it.
+/// Its address in links of the page.
 pub(crate) const LINK: &str = "docs/";
 const SUMMARY: &str = "docs/SUMMARY.md";
 const STYLE: &str = include_str!("docs/site.css");
 const TEMPLATE: &str = include_str!("docs/site.html");
 
-/// Writes the site; an error if a link leads nowhere or a page of `docs/` is not listed.
+/// Writes the site; an error if the target of a link does not exist, or a page of `docs/` is not listed.
 pub(crate) fn build(site: &Path) -> Result<()> {
     let book = Book::read(root())?;
-    if site.exists() {
-        std::fs::remove_dir_all(site).with_context(|| format!("{} can't be removed", site.display()))?;
-    }
+    files::remove_folder(site)?;
     for (name, bytes) in book.files()? {
         let file = site.join(name);
-        let problem = || format!("{} can't be written", file.display());
-        std::fs::create_dir_all(file.parent().unwrap_or(site)).with_context(problem)?;
-        std::fs::write(&file, bytes).with_context(problem)?;
+        files::create_folder(file.parent().unwrap_or(site))?;
+        files::write(&file, bytes)?;
     }
     Ok(())
 }
 
+/// A source of a page.
 #[derive(Debug)]
 struct Chapter {
+    /// Heading above it in the summary.
     part: String,
     title: String,
     /// From the workspace's root.
@@ -48,18 +47,21 @@ struct Book {
     chapters: Vec<Chapter>,
 }
 
+/// A page as HTML.
 struct Page {
     body: String,
     ids: BTreeSet<String>,
     /// Links to pages: output and id.
     links: Vec<(String, String)>,
-    /// Other files of `docs/` that it names.
+    /// Other files of `docs/` that it references.
     files: BTreeSet<PathBuf>,
 }
 
-/// What an address of a page means.
+/// The target of a link.
 enum Target {
-    Outside,
+    /// Another site.
+    External,
+    /// The output of a page.
     Page(String),
     /// A file of `docs/`, copied.
     Copy(PathBuf),
@@ -101,7 +103,7 @@ impl Book {
     }
 
     fn files(&self) -> Result<BTreeMap<String, Vec<u8>>> {
-        self.lists_all()?;
+        self.check_all_listed()?;
         let pages: Result<Vec<Page>> = self.chapters.iter().map(|chapter| self.page(chapter)).collect();
         let pages = pages?;
         let ids: BTreeMap<&str, &BTreeSet<String>> = self
@@ -122,32 +124,28 @@ impl Book {
             for file in &page.files {
                 let name = file.strip_prefix("docs").unwrap_or(file).to_string_lossy().into_owned();
                 let path = self.root.join(file);
-                files.insert(
-                    name,
-                    std::fs::read(&path).with_context(|| format!("{} can't be read", path.display()))?,
-                );
+                files.insert(name, files::read_bytes(&path)?);
             }
-            files.insert(chapter.output.clone(), self.whole(index, page).into_bytes());
+            files.insert(chapter.output.clone(), self.html(index, page).into_bytes());
         }
         Ok(files)
     }
 
     /// An error if a page of `docs/` is missing in the summary.
-    fn lists_all(&self) -> Result<()> {
-        for entry in walkdir::WalkDir::new(self.root.join("docs")) {
-            let entry = entry.context("docs/ can't be read")?;
+    fn check_all_listed(&self) -> Result<()> {
+        for entry in files::below(&self.root.join("docs"))? {
             let file = entry.path().strip_prefix(&self.root).unwrap_or(entry.path());
-            let listed =
+            let is_listed =
                 || file == Path::new(SUMMARY) || self.chapters.iter().any(|chapter| chapter.source == file);
             let is_page = file.extension().is_some_and(|extension| extension == "md");
-            ensure!(!is_page || listed(), "{SUMMARY} does not list {}", file.display());
+            ensure!(!is_page || is_listed(), "{SUMMARY} does not list {}", file.display());
         }
         Ok(())
     }
 
     fn target(&self, chapter: &Chapter, address: &str) -> Result<Target> {
         if address.contains(':') {
-            return Ok(Target::Outside);
+            return Ok(Target::External);
         }
         if address.is_empty() {
             return Ok(Target::Page(chapter.output.clone()));
@@ -170,8 +168,8 @@ impl Book {
         let mut page =
             Page { body: String::new(), ids: BTreeSet::new(), links: Vec::new(), files: BTreeSet::new() };
         let mut written = Vec::with_capacity(events.len());
-        // Whether the tags of each open link are left out.
-        let mut left_out = Vec::new();
+        // For each open link, whether its tags are omitted.
+        let mut omitted = Vec::new();
         for (index, event) in events.iter().enumerate() {
             match event {
                 Event::Start(Tag::Heading { level, .. }) => {
@@ -183,7 +181,7 @@ impl Book {
                 Event::Start(Tag::Link { link_type, dest_url, title, id }) => {
                     let (file, fragment) = dest_url.split_once('#').unwrap_or((dest_url.as_ref(), ""));
                     let address = match self.target(chapter, file)? {
-                        Target::Outside => Some(dest_url.to_string()),
+                        Target::External => Some(dest_url.to_string()),
                         Target::Page(output) => {
                             page.links.push((output.clone(), fragment.to_owned()));
                             let mark =
@@ -198,7 +196,7 @@ impl Book {
                         }
                         Target::Source => None,
                     };
-                    left_out.push(address.is_none());
+                    omitted.push(address.is_none());
                     if let Some(address) = address {
                         let (link_type, title, id) = (*link_type, title.clone(), id.clone());
                         written.push(Event::Start(Tag::Link {
@@ -210,7 +208,7 @@ impl Book {
                     }
                 }
                 Event::End(TagEnd::Link) => {
-                    if !left_out.pop().unwrap_or(false) {
+                    if !omitted.pop().unwrap_or(false) {
                         written.push(event.clone());
                     }
                 }
@@ -228,7 +226,8 @@ impl Book {
         Ok(page)
     }
 
-    fn whole(&self, index: usize, page: &Page) -> String {
+    /// The whole page with contents and neighbors.
+    fn html(&self, index: usize, page: &Page) -> String {
         let Some(chapter) = self.chapters.get(index) else { return String::new() };
         let to_root = up(&chapter.output);
         let link =
@@ -255,7 +254,7 @@ impl Book {
         };
         let previous = neighbor(index.checked_sub(1), "Previous:");
         let next = neighbor(Some(index + 1), "Next:");
-        // The body last: it may contain the marks of the others.
+        // The body last, because it may contain the marks of the others.
         [
             ("TITLE", escaped(&chapter.title)),
             ("ROOT", to_root),
@@ -263,7 +262,7 @@ impl Book {
             ("NEIGHBORS", previous + &next),
         ]
         .iter()
-        .fold(TEMPLATE.to_owned(), |whole, (mark, text)| whole.replace(&format!("{{{mark}}}"), text))
+        .fold(TEMPLATE.to_owned(), |html, (mark, text)| html.replace(&format!("{{{mark}}}"), text))
         .replace("{BODY}", &page.body)
     }
 }
@@ -272,7 +271,7 @@ fn read(root: &Path, file: &Path) -> Result<String> {
     std::fs::read_to_string(root.join(file)).with_context(|| format!("{} can't be read", file.display()))
 }
 
-/// The file that an address in `page` means, from the workspace's root.
+/// The file at an address in `page`, from the workspace's root.
 fn joined(page: &Path, address: &str) -> Result<PathBuf> {
     let mut file = page.parent().unwrap_or(Path::new("")).to_owned();
     for part in Path::new(address).components() {
@@ -298,7 +297,7 @@ fn output_of(source: &Path) -> String {
     file.to_string_lossy().replace('\\', "/")
 }
 
-/// The way from a page to the site's root.
+/// The relative address of the site's root.
 fn up(output: &str) -> String {
     "../".repeat(output.matches('/').count())
 }
@@ -315,8 +314,8 @@ fn heading_text(events: &[Event]) -> String {
 
 /// As GitHub forms them, so that links work in both places.
 fn new_id(heading: &str, used: &BTreeSet<String>) -> String {
-    let kept = heading.chars().filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c));
-    let id: String = kept.map(|c| if c == ' ' { '-' } else { c }).flat_map(char::to_lowercase).collect();
+    let allowed = heading.chars().filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c));
+    let id: String = allowed.map(|c| if c == ' ' { '-' } else { c }).flat_map(char::to_lowercase).collect();
     let others = (1..).map(|number| format!("{id}-{number}"));
     std::iter::once(id.clone()).chain(others).find(|id| !used.contains(id)).unwrap_or(id)
 }

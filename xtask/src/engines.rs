@@ -9,7 +9,7 @@ use tokio::process::Command;
 
 use crate::{apt, run, tools};
 
-/// Environment variables that name the programs if PATH does not; the tests read them, too.
+/// Environment variables with paths of the programs, if they are not on PATH; the tests read them, too.
 pub(crate) const FIREFOX: &str = "STEPSCOPE_FIREFOX";
 pub(crate) const GECKODRIVER: &str = "STEPSCOPE_GECKODRIVER";
 pub(crate) const WEBKITDRIVER: &str = "STEPSCOPE_WEBKITDRIVER";
@@ -23,14 +23,14 @@ impl Firefox {
     pub(crate) async fn ready() -> Result<Self> {
         let firefox = program(FIREFOX, &["firefox", "firefox-esr"], "firefox-esr").await.with_context(|| {
             format!(
-                "tests in Firefox need it: install it (Debian: `apt-get install firefox-esr` as root) so that it is \
-                 on PATH, or name it in {FIREFOX}"
+                "tests in Firefox need it on PATH: install it (Debian: `apt-get install firefox-esr` as root), or set \
+                 {FIREFOX}"
             )
         })?;
         let geckodriver = match env::var_os(GECKODRIVER) {
             Some(named) => named.into(),
             None => tools::geckodriver().await.with_context(|| {
-                format!("tests in Firefox need geckodriver: install it so that it is on PATH, or name it in {GECKODRIVER}")
+                format!("tests in Firefox need geckodriver on PATH: install it, or set {GECKODRIVER}")
             })?,
         };
         Ok(Self { firefox, geckodriver })
@@ -48,20 +48,20 @@ impl WebKit {
     pub(crate) async fn ready() -> Result<Self> {
         let driver = program(WEBKITDRIVER, &["WebKitWebDriver"], "webkit2gtk-driver").await.with_context(|| {
             format!(
-                "tests in WebKit need WebKitGTK's MiniBrowser and its driver: install them (Debian: `apt-get install \
-                 webkit2gtk-driver` as root) so that WebKitWebDriver is on PATH, or name it in {WEBKITDRIVER}"
+                "tests in WebKit need WebKitGTK's MiniBrowser, and WebKitWebDriver on PATH: install both (Debian: `apt-get \
+                 install webkit2gtk-driver` as root), or set {WEBKITDRIVER}"
             )
         })?;
         let server = program("STEPSCOPE_XVFB", &["Xvfb"], "xvfb").await.context(
-            "tests in WebKit need a display that nobody looks at: install Xvfb (Debian: `apt-get install xvfb` as \
-             root) so that it is on PATH",
+            "tests in WebKit need a virtual display: install Xvfb (Debian: `apt-get install xvfb` as root) so that it \
+             is on PATH",
         )?;
         let mut command = Command::new(server);
-        // Xvfb takes a free display number and prints it.
+        // Xvfb selects a free display number and prints it.
         command.args(["-displayfd", "1", "-screen", "0", "1600x1200x24", "-nolisten", "tcp"]);
         command.stdout(Stdio::piped()).stderr(Stdio::null());
         let mut server = run::start(command)?;
-        let number = server.first_line().await.context("Xvfb did not say which display it serves")?;
+        let number = server.first_line().await.context("Xvfb did not report its display")?;
         Ok(Self { driver, display: format!(":{number}"), _server: server })
     }
 }

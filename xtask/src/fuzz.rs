@@ -1,14 +1,14 @@
 //! `cargo xtask fuzz` runs libFuzzer on the checks of `tests/src/fuzzing.rs`, through cargo-fuzz.
 //!
-//! Sanitizers need a nightly Rust and find what safe Rust cannot contain. With `--sanitizer none` stable Rust counts
-//! coverage, too; debug assertions and overflow checks are on.
+//! Sanitizers need a nightly Rust and find errors that safe Rust cannot contain. With `--sanitizer none` stable Rust also
+//! measures coverage; debug assertions and overflow checks are on.
 //!
 //! Every run starts with the same inputs: seeds made from the repository, and earlier findings. So the same `--seed`
-//! repeats a run. Without one a run draws a seed and prints it.
+//! repeats a run. Without one, a random seed is used and printed.
 
 mod report;
 
-use std::fs::{self, File};
+use std::fs;
 use std::hash::{BuildHasher as _, RandomState};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -17,35 +17,36 @@ use anyhow::{Context, Result, bail, ensure};
 use serde::Deserialize;
 use tokio::process::Command;
 
-use crate::{root, run, toolchain, tools};
+use crate::{files, root, run, toolchain, tools};
 use report::Report;
 
+/// Time for a target to end after its seconds.
 const GRACE: Duration = Duration::from_secs(120);
+/// Limits per input.
 const INPUT_SECONDS: u32 = 10;
 const MEMORY_MB: u32 = 2048;
 
 pub(crate) struct Options {
     pub(crate) targets: Vec<String>,
     pub(crate) seconds: u32,
-    /// Not 0, which libFuzzer takes as "any".
+    /// Not 0, which libFuzzer replaces by a random seed.
     pub(crate) seed: u32,
 }
 
 pub(crate) fn new_seed() -> u32 {
-    let chance = RandomState::new().hash_one(std::process::id());
-    (chance as u32).max(1)
+    let random = RandomState::new().hash_one(std::process::id());
+    (random as u32).max(1)
 }
 
 pub(crate) async fn run(options: Options) -> Result<()> {
     let manifest = root().join("fuzz").join("Cargo.toml");
-    let text =
-        fs::read_to_string(&manifest).with_context(|| format!("{} can't be read", manifest.display()))?;
+    let text = files::read(&manifest)?;
     let targets = chosen(&names(&text)?, &options.targets)?;
     let home = root().join("target").join("fuzz");
     let programs = build(&manifest, &home.join("build")).await?;
     inputs(&home).await?;
 
-    let mut found = Vec::new();
+    let mut failed = Vec::new();
     for target in &targets {
         println!("\n=== {target}: {} s, seed {}", options.seconds, options.seed);
         let folder = home.join(target);
@@ -54,11 +55,11 @@ pub(crate) async fn run(options: Options) -> Result<()> {
         if let Some(input) = &report.finding {
             let input = folder.join(input);
             println!("{}", advice(target, &input, &programs.join(target)));
-            found.push(target.as_str());
+            failed.push(target.as_str());
         }
     }
-    ensure!(found.is_empty(), "something was found in: {}", found.join(", "));
-    println!("\n{} run, nothing found", targets.join(", "));
+    ensure!(failed.is_empty(), "failing inputs in: {}", failed.join(", "));
+    println!("\nno failing input in {}", targets.join(", "));
     Ok(())
 }
 
@@ -71,15 +72,15 @@ fn names(manifest: &str) -> Result<Vec<String>> {
     struct Bin {
         name: String,
     }
-    let manifest: Manifest = toml::from_str(manifest).context("fuzz/Cargo.toml is not what it should be")?;
+    let manifest: Manifest = toml::from_str(manifest).context("fuzz/Cargo.toml is invalid")?;
     Ok(manifest.bin.into_iter().map(|bin| bin.name).collect())
 }
 
-fn chosen(all: &[String], asked: &[String]) -> Result<Vec<String>> {
-    if let Some(unknown) = asked.iter().find(|name| !all.contains(name)) {
-        bail!("{unknown} is no fuzz target; give {}, or none for all", all.join(", "));
+fn chosen(all: &[String], requested: &[String]) -> Result<Vec<String>> {
+    if let Some(unknown) = requested.iter().find(|name| !all.contains(name)) {
+        bail!("unknown fuzz target {unknown}; use one of {}, or none for all", all.join(", "));
     }
-    Ok(if asked.is_empty() { all.to_vec() } else { asked.to_vec() })
+    Ok(if requested.is_empty() { all.to_vec() } else { requested.to_vec() })
 }
 
 async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
@@ -87,12 +88,12 @@ async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     let mut fetch = toolchain::cargo();
     fetch.args(["fetch", "--quiet", "--locked", "--manifest-path"]).arg(manifest);
     run::to_end(fetch).await.context(
-        "if fuzz/Cargo.lock does not fit any more, `cargo update --workspace --manifest-path fuzz/Cargo.toml` mends it",
+        "if fuzz/Cargo.lock is out of date, run `cargo update --workspace --manifest-path fuzz/Cargo.toml`",
     )?;
     let triple = toolchain::host().await?;
     let mut command = Command::new(cargo_fuzz);
     command.current_dir(root()).args(["build", "--sanitizer", "none"]);
-    // libFuzzer may compare addresses, which differ between runs; coverage alone finds as much.
+    // Traced comparisons may include addresses, which differ between runs; coverage alone finds as much.
     command.args(["--no-trace-compares", "--target", &triple, "--target-dir"]).arg(folder);
     run::compile(command).await.context(
         "the fuzz targets were not built; libFuzzer needs a C++ compiler (Debian: apt-get install g++)",
@@ -100,6 +101,7 @@ async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     Ok(folder.join(triple).join("release"))
 }
 
+/// Writes the first inputs of all targets.
 async fn inputs(home: &Path) -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["run", "--quiet", "--locked", "--package", "stepscope-tests", "--example", "fuzz-inputs"]);
@@ -116,7 +118,7 @@ async fn fuzz(program: &Path, folder: &Path, options: &Options) -> Result<Report
     names.sort();
     fs::write(folder.join("inputs.list"), names.join(","))?;
     let log = folder.join("log");
-    let file = File::create(&log).with_context(|| format!("{} can't be written", log.display()))?;
+    let file = files::create(&log)?;
 
     let mut command = Command::new(program);
     command.current_dir(folder).stderr(file);
@@ -126,11 +128,11 @@ async fn fuzz(program: &Path, folder: &Path, options: &Options) -> Result<Report
     if folder.join("dictionary").exists() {
         command.arg("-dict=dictionary");
     }
-    let ended = run::within(command, Duration::from_secs(options.seconds.into()) + GRACE).await;
+    let result = run::within(command, Duration::from_secs(options.seconds.into()) + GRACE).await;
 
-    let text = fs::read(&log).with_context(|| format!("{} can't be read", log.display()))?;
+    let text = files::read_bytes(&log)?;
     let report = Report::of(&String::from_utf8_lossy(&text));
-    match ended {
+    match result {
         Err(error) if report.finding.is_none() => {
             Err(error.context(format!("the target failed without a finding; see {}", log.display())))
         }
@@ -164,12 +166,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_named_is_all_and_what_is_no_target_is_refused_with_the_names() {
+    fn without_names_all_targets_run_and_unknown_names_are_refused() {
         let text = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
         let all = text(&["line", "link"]);
         assert_eq!(chosen(&all, &[]).unwrap(), all);
         assert_eq!(chosen(&all, &text(&["link"])).unwrap(), text(&["link"]));
         let error = chosen(&all, &text(&["lin"])).unwrap_err().to_string();
-        assert_eq!(error, "lin is no fuzz target; give line, link, or none for all");
+        assert_eq!(error, "unknown fuzz target lin; use one of line, link, or none for all");
     }
 }

@@ -1,4 +1,4 @@
-//! Reads `web/_headers`, the one place that sets headers per path.
+//! Reads `web/_headers`, which sets the headers per path.
 //!
 //! The format is that of static hosts: a path, its headers indented below it, `#` for comments. Only exact paths and
 //! a `*` at the end are accepted: other patterns might mean different things on different hosts.
@@ -40,14 +40,15 @@ impl Headers {
             if !line.starts_with(char::is_whitespace) {
                 let prefix = content.strip_suffix('*').unwrap_or(content);
                 if !content.starts_with('/') || prefix.contains(['*', ':', ' ']) {
-                    bail!("{}: give a path such as /pkg/app.js, or a prefix such as /pkg/*", at());
+                    bail!("{}: not a path; use one such as /pkg/app.js, or a prefix such as /pkg/*", at());
                 }
                 rules.push(Rule { path: content.to_owned(), headers: Vec::new() });
                 continue;
             }
             let rule = rules.last_mut().with_context(|| format!("{}: a header before any path", at()))?;
-            let (name, value) =
-                content.split_once(':').with_context(|| format!("{}: give `Name: value`", at()))?;
+            let (name, value) = content
+                .split_once(':')
+                .with_context(|| format!("{}: not a header; use `Name: value`", at()))?;
             rule.headers
                 .push((name.trim().parse().with_context(at)?, value.trim().parse().with_context(at)?));
         }
@@ -82,15 +83,15 @@ mod tests {
     }
 
     #[test]
-    fn what_only_some_hosts_know_is_refused_with_its_line() {
+    fn ambiguous_lines_are_refused_with_their_number() {
         for (text, expected) in [
             ("  X: 1", "line 1: X: 1: a header before any path"),
-            ("/*\n  no colon", "line 2: no colon: give `Name: value`"),
-            ("/*\n  ! X", "line 2: ! X: give `Name: value`"),
+            ("/*\n  no colon", "line 2: no colon: not a header; use `Name: value`"),
+            ("/*\n  ! X", "line 2: ! X: not a header; use `Name: value`"),
             ("/*\n  A b: 1", "line 2: A b: 1"),
-            ("/a/*/b\n", "line 1: /a/*/b: give a path"),
-            ("/:page\n", "line 1: /:page: give a path"),
-            ("example/*\n", "line 1: example/*: give a path"),
+            ("/a/*/b\n", "line 1: /a/*/b: not a path; use"),
+            ("/:page\n", "line 1: /:page: not a path; use"),
+            ("example/*\n", "line 1: example/*: not a path; use"),
         ] {
             let error = format!("{:#}", Headers::parse(text).unwrap_err());
             assert!(error.contains(expected), "{text:?} gave {error:?}, not {expected:?}");
@@ -101,12 +102,12 @@ mod tests {
         let text = std::fs::read_to_string(crate::root().join("web/_headers")).unwrap();
         let headers = Headers::parse(&text).unwrap();
         let values: Vec<_> = headers.of("/").filter(|(given, _)| given.as_str() == name).collect();
-        assert_eq!(values.len(), 1, "{name} must stand in web/_headers exactly once");
+        assert_eq!(values.len(), 1, "{name} must be in web/_headers exactly once");
         values[0].1.to_str().unwrap().to_owned()
     }
 
     #[test]
-    fn the_workspace_file_says_what_the_page_needs() {
+    fn the_headers_of_the_page_have_the_required_values() {
         let policy = own("content-security-policy");
         assert!(policy.starts_with("default-src 'none'; "), "{policy}");
         assert!(policy.contains("; script-src 'self' 'wasm-unsafe-eval'; "), "{policy}");
@@ -125,6 +126,6 @@ mod tests {
         let policy = own("content-security-policy").replace("; frame-ancestors 'none'", "");
         let tag = format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\"");
         let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(page.contains(&tag), "web/index.html must hold, as web/_headers says:\n{tag}>");
+        assert!(page.contains(&tag), "web/index.html must contain the policy of web/_headers:\n{tag}>");
     }
 }

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use tokio::process::Command;
 
-use crate::aside::say;
+use crate::output_buffer::print_line;
 use crate::tools::cache;
 use crate::{apt, run, toolchain};
 
 const PACKAGES: [&str; 3] = ["pyserial==3.5", "cobs==1.2.2", "google-crc32c==1.9.0"];
-/// The folder's number changes with these versions.
+/// Change the number when these versions change.
 const HOME: &str = "live-judges-1";
 const PROBE: &str = "import serial, cobs.cobs, google_crc32c";
 
@@ -23,17 +23,19 @@ pub(crate) async fn test() -> Result<()> {
     run::cargo_test(command).await
 }
 
+/// Installs socat if it is missing.
 pub(crate) async fn socat() -> Result<()> {
     apt::require("the test of live commands", &["socat"], &["socat"]).await
 }
 
+/// A Python with the packages.
 pub(crate) async fn python() -> Result<PathBuf> {
     let home = cache()?.join("tools").join(HOME);
     let python = home.join("bin").join("python");
-    if python.exists() && works(&python).await {
+    if python.exists() && has_packages(&python).await {
         return Ok(python);
     }
-    say(format_args!("installing {} (once)", PACKAGES.join(" and ")));
+    print_line(format_args!("installing {} (once)", PACKAGES.join(" and ")));
     let remedy = "the live commands' tests need Python 3.9 or newer with venv and pip (Debian: `apt-get install python3-venv` as root)";
     let mut command = Command::new(which::which("python3").context(remedy)?);
     command.args(["-m", "venv", "--clear"]).arg(&home);
@@ -44,7 +46,7 @@ pub(crate) async fn python() -> Result<PathBuf> {
     Ok(python)
 }
 
-async fn works(python: &Path) -> bool {
+async fn has_packages(python: &Path) -> bool {
     let mut command = Command::new(python);
     command.args(["-c", PROBE]);
     run::output(command).await.is_some()

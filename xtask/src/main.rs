@@ -1,34 +1,35 @@
 //! `cargo xtask`: the project's tasks beyond plain cargo.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! | --- | --- |
 //! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | install missing tools once per user |
-//! | `page`, `dist`, `made` | build the page, unless it is up to date |
+//! | `page`, `dist`, `build_record` | build the page, unless it is up to date |
 //! | `docs` | build the documentation as a site |
 //! | `sources` | format, lint and type-check the page's sources |
 //! | `words`, `spelling` | check the words and the spelling of texts |
 //! | `headers`, `serve` | the local server |
-//! | `steps`, `aside`, `browser`, `engines`, `serial_port`, `bare_metal`, `dump_readers`, `avr`, `judges`, `package` | `cargo xtask test` |
+//! | `steps`, `output_buffer`, `browser`, `engines`, `serial_port`, `bare_metal`, `dump_readers`, `avr`, `judges`, `package` | `cargo xtask test` |
 //! | `bench`, `fuzz`, `mutants` | the commands of these names |
-//! | `run`, `attend` | child processes |
+//! | `run`, `attend`, `files` | child processes and files |
 
 mod apt;
-mod aside;
 mod attend;
 mod avr;
 mod bare_metal;
 mod bench;
 mod browser;
+mod build_record;
 mod dist;
 mod docs;
 mod dump_readers;
 mod engines;
+mod files;
 mod fuzz;
 mod headers;
 mod judges;
-mod made;
 mod mutants;
 mod npm;
+mod output_buffer;
 mod package;
 mod page;
 mod run;
@@ -70,12 +71,12 @@ enum Task {
         #[arg(long)]
         no_open: bool,
         #[command(flatten)]
-        optimising: Optimising,
+        optimize: OptimizeOption,
     },
     /// Build the page's wasm into web/pkg and web/pkg-tools, for `serve`
     Build {
         #[command(flatten)]
-        optimising: Optimising,
+        optimize: OptimizeOption,
     },
     /// Build the page into dist/ for any static host, and print the size of each file
     Dist {
@@ -83,7 +84,7 @@ enum Task {
         #[arg(long)]
         no_build: bool,
         #[command(flatten)]
-        optimising: Optimising,
+        optimize: OptimizeOption,
     },
     /// Build the documentation as a site into dist/docs
     Docs,
@@ -158,15 +159,15 @@ enum Task {
 }
 
 #[derive(Args, Clone, Copy)]
-struct Optimising {
+struct OptimizeOption {
     /// Build without wasm-opt; the page is larger and slower
     #[arg(long)]
     no_opt: bool,
 }
 
-impl Optimising {
-    fn wanted(self) -> tools::Optimise {
-        if self.no_opt { tools::Optimise::No } else { tools::Optimise::Yes }
+impl OptimizeOption {
+    fn value(self) -> tools::Optimize {
+        if self.no_opt { tools::Optimize::No } else { tools::Optimize::Yes }
     }
 }
 
@@ -175,25 +176,25 @@ fn root() -> &'static Path {
     here.parent().unwrap_or(here)
 }
 
-/// This program's path, for tests that start it again. Read first: a step may replace the program by a new build, and
-/// the system would then report a missing file.
+/// This program's path, for tests that start it. Read first, because a step may replace the program by a new build; then
+/// the system would report a missing file.
 static THIS_PROGRAM: LazyLock<io::Result<PathBuf>> = LazyLock::new(env::current_exe);
 
 async fn perform(task: Task) -> Result<()> {
     let web = root().join("web");
     match task {
-        Task::Demo { port, no_open, optimising } => {
+        Task::Demo { port, no_open, optimize } => {
             // Bind first: a taken port is reported before the build.
             let listener = serve::bind(port)?;
-            page::shipped(optimising.wanted()).await?;
+            page::shipped(optimize.value()).await?;
             serve::serve(listener, &dist::folder(), !no_open).await
         }
-        Task::Build { optimising } => page::build(optimising.wanted()).await,
-        Task::Dist { no_build, optimising } => {
+        Task::Build { optimize } => page::build(optimize.value()).await,
+        Task::Dist { no_build, optimize } => {
             let parts = if no_build {
                 dist::make(&web, &dist::folder()).await?
             } else {
-                page::shipped(optimising.wanted()).await?
+                page::shipped(optimize.value()).await?
             };
             print!("{}", page::weigh(&dist::folder(), &parts)?);
             Ok(())
@@ -232,17 +233,17 @@ async fn perform(task: Task) -> Result<()> {
 #[tokio::main(flavor = "current_thread")]
 async fn main() -> ExitCode {
     LazyLock::force(&THIS_PROGRAM);
-    LazyLock::force(&made::PROGRAM);
+    LazyLock::force(&build_record::PROGRAM);
     let task = Cli::parse().task;
-    // Dropping the future ends the process group of the child that it waits for.
-    let done = tokio::select! {
-        done = perform(task) => done,
+    // Dropping the future ends the process group of its child.
+    let result = tokio::select! {
+        result = perform(task) => result,
         signal = run::interrupted() => match signal {
             Ok(code) => return ExitCode::from(code),
             Err(error) => Err(error),
         },
     };
-    match done {
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error:#}");

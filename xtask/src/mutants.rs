@@ -1,11 +1,11 @@
 //! `cargo xtask mutants`: cargo-mutants changes one expression at a time (a `<` to `<=`, a result to 0) in the
 //! peripheral and the motions, and the tests have to fail.
 //!
-//! All mutants together take days, so a run draws a sample; the same `--seed` draws the same one.
+//! All mutants together take days, so a run tests a random sample; the same `--seed` draws the same sample.
 //! `.cargo/mutants.toml` lists what is excluded and why.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
@@ -15,12 +15,12 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde::Deserialize;
 use tokio::process::Command;
 
-use crate::{root, run, tools};
+use crate::{files, root, run, tools};
 
 const PACKAGES: [&str; 2] = ["stepscope-peripheral", "stepscope-motion"];
 const TESTED: [&str; 4] = ["stepscope-peripheral", "stepscope-motion", "stepscope-core", "stepscope-tests"];
 const TESTS: [&str; 2] = ["all", "exact_curves"];
-/// Skipped: tests of something else, and slow ones that check what others check, too.
+/// Skipped: tests of other code, and slow ones that repeat checks of others.
 const SKIPPED: [&str; 15] = [
     "architecture::",
     "controller_model::",
@@ -41,9 +41,10 @@ const SKIPPED: [&str; 15] = [
 const MIN_CAUGHT_PERCENT: usize = 95;
 /// Minimum time for a mutant's tests. cargo-mutants may allow a multiple of the unchanged tests' time.
 const TEST_LIMIT: Duration = Duration::from_secs(2 * 60);
-/// Time for the copy, its first build and the unchanged tests.
-const START: Duration = Duration::from_secs(40 * 60);
-const EACH: Duration = Duration::from_secs(4 * 60);
+/// Maximum time for the copy, its first build and the unchanged tests.
+const SETUP_LIMIT: Duration = Duration::from_secs(40 * 60);
+/// Maximum time per mutant.
+const MUTANT_LIMIT: Duration = Duration::from_secs(4 * 60);
 
 pub(crate) struct Options {
     pub(crate) sample: usize,
@@ -55,45 +56,45 @@ pub(crate) async fn run(options: Options) -> Result<()> {
     let packages = chosen(&options.packages)?;
     let program = tools::cargo_mutants().await?;
     let folder = root().join("target").join("mutants");
-    fs::create_dir_all(&folder).with_context(|| format!("{} can't be made", folder.display()))?;
+    files::create_folder(&folder)?;
     let all = list(&program, &packages, &folder.join("list.json")).await?;
     let sample = drawn(all.clone(), options.sample, options.seed);
     println!("{} of {} mutants, drawn with seed {}", sample.len(), all.len(), options.seed);
 
     let results = folder.join("mutants.out");
-    leave_out(&results, all.iter().filter(|name| !sample.contains(*name)))?;
-    let limit = START + EACH * u32::try_from(sample.len()).unwrap_or(u32::MAX);
-    // It fails if it missed a mutant; the files that it wrote give the result.
-    let ended = run::within(testing(&program, &packages, &folder), limit).await;
+    skip_mutants(&results, all.iter().filter(|name| !sample.contains(*name)))?;
+    let limit = SETUP_LIMIT + MUTANT_LIMIT * u32::try_from(sample.len()).unwrap_or(u32::MAX);
+    // It fails if it missed a mutant, so the result comes from its files.
+    let result = run::within(testing(&program, &packages, &folder), limit).await;
     let Ok(text) = fs::read_to_string(results.join("outcomes.json")) else {
-        return ended.context("cargo-mutants did not get as far as its first outcome");
+        return result.context("cargo-mutants ended before its first outcome");
     };
-    let verdict = Verdict::of(&text)?;
-    println!("\n{verdict}");
+    let tally = Tally::of(&text)?;
+    println!("\n{tally}");
     ensure!(
-        verdict.judged() == sample.len(),
-        "only {} of {} mutants were tried; what the tests of the unchanged code said is in {}",
-        verdict.judged(),
+        tally.tested() == sample.len(),
+        "only {} of {} mutants were tested; {} has the output of the unchanged tests",
+        tally.tested(),
         sample.len(),
         results.join("log").display()
     );
     ensure!(
-        verdict.is_enough(),
-        "less than {MIN_CAUGHT_PERCENT} % were caught: give what was missed a test, or, if no test could notice, \
-         a line with the reason in .cargo/mutants.toml"
+        tally.is_enough(),
+        "less than {MIN_CAUGHT_PERCENT} % were caught; add tests for the missed ones, or, where no test is possible, a \
+         line with the reason in .cargo/mutants.toml"
     );
     Ok(())
 }
 
-fn chosen(asked: &[String]) -> Result<Vec<&str>> {
-    for package in asked {
+fn chosen(requested: &[String]) -> Result<Vec<&str>> {
+    for package in requested {
         ensure!(
             PACKAGES.contains(&package.as_str()),
-            "{package} is not changed here; give {}, or none for both",
+            "{package} is not supported; use {}, or none for both",
             PACKAGES.join(" or ")
         );
     }
-    Ok(if asked.is_empty() { PACKAGES.to_vec() } else { asked.iter().map(String::as_str).collect() })
+    Ok(if requested.is_empty() { PACKAGES.to_vec() } else { requested.iter().map(String::as_str).collect() })
 }
 
 fn cargo_mutants(program: &Path, packages: &[&str]) -> Command {
@@ -111,11 +112,11 @@ async fn list(program: &Path, packages: &[&str], file: &Path) -> Result<Vec<Stri
         name: String,
     }
     let mut command = cargo_mutants(program, packages);
-    let output = File::create(file).with_context(|| format!("{} can't be written", file.display()))?;
+    let output = files::create(file)?;
     command.args(["--list", "--json"]).stdout(output);
     run::within(command, run::LIMIT).await?;
-    let text = fs::read_to_string(file).with_context(|| format!("{} can't be read", file.display()))?;
-    let mutants: Vec<Mutant> = serde_json::from_str(&text).context("cargo-mutants' list is no JSON")?;
+    let text = files::read(file)?;
+    let mutants: Vec<Mutant> = serde_json::from_str(&text).context("cargo-mutants' list is not JSON")?;
     Ok(mutants.into_iter().map(|mutant| mutant.name).collect())
 }
 
@@ -127,8 +128,8 @@ fn drawn(mut all: Vec<String>, sample: usize, seed: u64) -> BTreeSet<String> {
 
 /// Marks mutants as caught, so that `--iterate` skips them. cargo-mutants' own filters by name let some kinds
 /// through.
-fn leave_out<'a>(results: &Path, names: impl Iterator<Item = &'a String>) -> Result<()> {
-    let problem = || format!("{} can't be made anew", results.display());
+fn skip_mutants<'a>(results: &Path, names: impl Iterator<Item = &'a String>) -> Result<()> {
+    let problem = || format!("{} can't be replaced", results.display());
     if results.exists() {
         fs::remove_dir_all(results).with_context(problem)?;
     }
@@ -152,7 +153,7 @@ fn testing(program: &Path, packages: &[&str], folder: &Path) -> Command {
 }
 
 #[derive(Debug, Default, PartialEq, Eq)]
-struct Verdict {
+struct Tally {
     caught: usize,
     /// The tests were stopped because they took too long, which counts as caught.
     timeouts: Vec<String>,
@@ -160,7 +161,7 @@ struct Verdict {
     missed: Vec<String>,
 }
 
-impl Verdict {
+impl Tally {
     fn of(text: &str) -> Result<Self> {
         #[derive(Deserialize)]
         struct Outcomes {
@@ -177,25 +178,25 @@ impl Verdict {
             Mutant { name: String },
         }
         let Outcomes { outcomes } =
-            serde_json::from_str(text).context("cargo-mutants' outcomes.json is not what it should be")?;
-        let mut verdict = Self::default();
+            serde_json::from_str(text).context("cargo-mutants' outcomes.json is invalid")?;
+        let mut tally = Self::default();
         for Outcome { scenario, summary } in outcomes {
             match (scenario, summary.as_str()) {
                 (Scenario::Baseline, _) => {}
-                (Scenario::Mutant { .. }, "CaughtMutant") => verdict.caught += 1,
-                (Scenario::Mutant { .. }, "Unviable") => verdict.unviable += 1,
-                (Scenario::Mutant { name }, "Timeout") => verdict.timeouts.push(name),
-                (Scenario::Mutant { name }, _) => verdict.missed.push(name),
+                (Scenario::Mutant { .. }, "CaughtMutant") => tally.caught += 1,
+                (Scenario::Mutant { .. }, "Unviable") => tally.unviable += 1,
+                (Scenario::Mutant { name }, "Timeout") => tally.timeouts.push(name),
+                (Scenario::Mutant { name }, _) => tally.missed.push(name),
             }
         }
-        Ok(verdict)
+        Ok(tally)
     }
 
     fn viable(&self) -> usize {
         self.caught + self.timeouts.len() + self.missed.len()
     }
 
-    fn judged(&self) -> usize {
+    fn tested(&self) -> usize {
         self.viable() + self.unviable
     }
 
@@ -204,16 +205,16 @@ impl Verdict {
     }
 }
 
-impl std::fmt::Display for Verdict {
+impl std::fmt::Display for Tally {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        for (word, names) in [("stopped after their time", &self.timeouts), ("missed", &self.missed)] {
+        for (word, names) in [("timed out", &self.timeouts), ("missed", &self.missed)] {
             for name in names {
                 writeln!(f, "{word}: {name}")?;
             }
         }
         write!(
             f,
-            "{} of {} caught ({} of them stopped after their time), {} missed; {} could not be built",
+            "{} of {} caught ({} of them timed out), {} missed; {} could not be built",
             self.caught + self.timeouts.len(),
             self.viable(),
             self.timeouts.len(),
@@ -228,18 +229,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_same_seed_draws_the_same_sample_and_another_another() {
+    fn the_sample_depends_only_on_the_seed() {
         let all: Vec<String> = (0..1000).map(|index| format!("mutant {index:04}")).collect();
         let draw = |sample, seed| drawn(all.clone(), sample, seed);
         assert_eq!(draw(60, 1), draw(60, 1));
         assert_ne!(draw(60, 1), draw(60, 2));
         assert_eq!(draw(60, 1).len(), 60);
-        assert!(draw(60, 1).is_superset(&draw(6, 1)), "a smaller sample is the larger one's beginning");
+        assert!(draw(60, 1).is_superset(&draw(6, 1)), "a smaller sample is part of a larger one");
         assert_eq!(draw(2000, 1).len(), 1000);
     }
 
     #[test]
-    fn what_cannot_be_built_counts_for_nothing_and_95_in_a_hundred_are_enough() {
+    fn unviable_mutants_do_not_count_and_95_percent_are_enough() {
         let outcome = |name: usize, summary: &str| {
             format!(r#"{{"scenario": {{"Mutant": {{"name": "m{name}"}}}}, "summary": "{summary}"}}"#)
         };
@@ -250,23 +251,23 @@ mod tests {
             outcomes.extend([outcome(100, "Timeout"), outcome(101, "Unviable")]);
             format!(r#"{{"outcomes": [{}]}}"#, outcomes.join(", "))
         };
-        let verdict = Verdict::of(&text(1)).unwrap();
-        assert_eq!((verdict.viable(), verdict.judged(), verdict.is_enough()), (20, 21, true));
-        assert!(!Verdict::of(&text(2)).unwrap().is_enough());
+        let tally = Tally::of(&text(1)).unwrap();
+        assert_eq!((tally.viable(), tally.tested(), tally.is_enough()), (20, 21, true));
+        assert!(!Tally::of(&text(2)).unwrap().is_enough());
         assert_eq!(
-            verdict.to_string(),
-            "stopped after their time: m100\nmissed: m0\n19 of 20 caught (1 of them stopped after their time), \
+            tally.to_string(),
+            "timed out: m100\nmissed: m0\n19 of 20 caught (1 of them timed out), \
              1 missed; 1 could not be built"
         );
     }
 
     #[test]
-    fn only_the_two_packages_are_changed() {
+    fn other_packages_are_refused() {
         assert_eq!(chosen(&[]).unwrap(), PACKAGES);
         let error = chosen(&["stepscope-wasm".to_owned()]).unwrap_err().to_string();
         assert_eq!(
             error,
-            "stepscope-wasm is not changed here; give stepscope-peripheral or stepscope-motion, or none for both"
+            "stepscope-wasm is not supported; use stepscope-peripheral or stepscope-motion, or none for both"
         );
     }
 }

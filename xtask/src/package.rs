@@ -1,5 +1,5 @@
-//! Builds and uses the packages as others get them: the library crates from what cargo packed, the npm package in a
-//! plain Node program. Publishes nothing.
+//! Packs and builds the packages as users get them: the library crates by cargo, the npm package in a Node program.
+//! Publishes nothing.
 
 use std::env;
 use std::fs;
@@ -10,10 +10,10 @@ use serde_json::{Value, json};
 use tokio::process::Command;
 use walkdir::{DirEntry, WalkDir};
 
-use crate::aside::say;
-use crate::made::Made;
+use crate::build_record::BuildRecord;
 use crate::npm::node_program;
-use crate::{page, root, run, toolchain};
+use crate::output_buffer::print_line;
+use crate::{files, page, root, run, toolchain};
 
 const LIBRARIES: [&str; 10] = [
     "registers",
@@ -38,19 +38,18 @@ pub(crate) async fn test() -> Result<()> {
 }
 
 async fn crates() -> Result<()> {
-    // cargo assumes that a version of a package never changes, but here it does. So earlier unpacked and built copies
-    // are removed.
+    // cargo assumes that a version of a package never changes, but here it does, so copies from earlier runs are removed.
     let folder = root().join("target").join("packages");
     let packages = folder.join("package");
-    let made = Made::of(&packages, &["core", "LICENSE-MIT", "LICENSE-APACHE"], &[]).await?;
-    if made.stands()? {
-        say("the library crates are those that were packed and built last");
+    let record = BuildRecord::of(&packages, &["core", "LICENSE-MIT", "LICENSE-APACHE"], &[]).await?;
+    if record.is_current()? {
+        print_line("the library crates are up to date");
         return Ok(());
     }
-    made.clear()?;
+    record.clear()?;
     clear_own(&folder)?;
     for unpacked in unpacked(&cargo_home()?.join("registry").join("src")) {
-        clear(&unpacked)?;
+        files::remove_folder(&unpacked)?;
     }
     let mut command = toolchain::cargo();
     command.args(["package", "--locked", "--allow-dirty", "--target-dir"]).arg(&folder);
@@ -58,7 +57,7 @@ async fn crates() -> Result<()> {
         command.args(["--package", &format!("stepscope-{library}")]);
     }
     run::compile(command).await?;
-    made.keep()
+    record.save()
 }
 
 fn cargo_home() -> Result<PathBuf> {
@@ -79,31 +78,23 @@ fn unpacked(sources: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-fn clear(folder: &Path) -> Result<()> {
-    if folder.exists() {
-        fs::remove_dir_all(folder).with_context(|| format!("{} can't be cleared", folder.display()))?;
-    }
-    Ok(())
-}
-
-/// Keeps the builds of other authors' crates.
+/// Removes our crates, but not the builds of third-party crates.
 fn clear_own(folder: &Path) -> Result<()> {
     if !folder.exists() {
         return Ok(());
     }
-    let own = |entry: &DirEntry| entry.file_name().to_string_lossy().contains("stepscope");
+    let is_own = |entry: &DirEntry| entry.file_name().to_string_lossy().contains("stepscope");
     let mut all = WalkDir::new(folder).into_iter();
     while let Some(entry) = all.next() {
         let entry = entry.with_context(|| format!("{} can't be read", folder.display()))?;
-        if !own(&entry) {
+        if !is_own(&entry) {
             continue;
         }
         if entry.file_type().is_dir() {
             all.skip_current_dir();
-            clear(entry.path())?;
+            files::remove_folder(entry.path())?;
         } else {
-            let problem = || format!("{} can't be removed", entry.path().display());
-            fs::remove_file(entry.path()).with_context(problem)?;
+            files::remove(entry.path())?;
         }
     }
     Ok(())
@@ -112,15 +103,15 @@ fn clear_own(folder: &Path) -> Result<()> {
 async fn npm() -> Result<()> {
     let npm = node_program("npm").await?;
     let home = root().join("target").join("npm");
-    let made = home.join("pkg");
-    page::npm(&made).await?;
+    let built = home.join("pkg");
+    page::npm(&built).await?;
     let folder = home.join("trial");
-    clear(&folder)?;
+    files::remove_folder(&folder)?;
     let user = folder.join("user");
-    fs::create_dir_all(&user).with_context(|| format!("{} can't be made", user.display()))?;
+    files::create_folder(&user)?;
 
     let mut pack = Command::new(&npm);
-    pack.current_dir(&made).args(["pack", "--pack-destination"]).arg(&folder);
+    pack.current_dir(&built).args(["pack", "--pack-destination"]).arg(&folder);
     run::to_end(pack).await?;
     let package = packed(&folder)?;
 
@@ -130,7 +121,7 @@ async fn npm() -> Result<()> {
 
     let tests = root().join("tests");
     let script = user.join("preset.mjs");
-    fs::copy(tests.join("npm").join("preset.mjs"), &script).context("the test's program can't be copied")?;
+    fs::copy(tests.join("npm").join("preset.mjs"), &script).context("preset.mjs can't be copied")?;
     let mut node = Command::new(node_program("node").await?);
     node.arg(&script).arg(tests.join("golden"));
     run::to_end(node).await.with_context(|| format!("the program needs Node {NODE}"))
@@ -139,20 +130,21 @@ async fn npm() -> Result<()> {
 fn packed(folder: &Path) -> Result<PathBuf> {
     let files = fs::read_dir(folder).with_context(|| format!("{} can't be read", folder.display()))?;
     let mut packages = files.filter_map(|entry| entry.ok().map(|entry| entry.path()));
-    packages.find(|path| path.extension().is_some_and(|end| end == "tgz")).context("npm packed nothing")
+    packages.find(|path| path.extension().is_some_and(|end| end == "tgz")).context("npm created no package")
 }
 
+/// Adds what wasm-pack leaves out of `package.json`.
 pub(crate) fn complete(folder: &Path) -> Result<()> {
     let file = folder.join("package.json");
-    let text = fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
+    let text = files::read(&file)?;
     for name in UNLISTED {
-        ensure!(folder.join(name).is_file(), "{name} is not in {}", folder.display());
+        ensure!(folder.join(name).is_file(), "{name} is missing in {}", folder.display());
     }
-    fs::write(&file, completed(&text)?).with_context(|| format!("{} can't be written", file.display()))
+    files::write(&file, completed(&text)?)
 }
 
 fn completed(text: &str) -> Result<String> {
-    let mut package: Value = serde_json::from_str(text).context("wasm-pack's package.json is no JSON")?;
+    let mut package: Value = serde_json::from_str(text).context("wasm-pack's package.json is not JSON")?;
     let files = package.get_mut("files").and_then(Value::as_array_mut);
     let files = files.context("wasm-pack's package.json lists no files")?;
     for name in UNLISTED {
@@ -160,7 +152,7 @@ fn completed(text: &str) -> Result<String> {
             files.push(json!(name));
         }
     }
-    let fields = package.as_object_mut().context("wasm-pack's package.json is no object")?;
+    let fields = package.as_object_mut().context("wasm-pack's package.json is not an object")?;
     fields.insert("engines".to_owned(), json!({ "node": NODE }));
     Ok(serde_json::to_string_pretty(&package)? + "\n")
 }
@@ -170,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_the_library_crates_of_registries_without_a_host_are_taken_for_unpacked() {
+    fn unpacked_crates_are_those_of_registries_without_a_host() {
         let sources = env::temp_dir().join(format!("stepscope-unpacked-{}", std::process::id()));
         let version = env!("CARGO_PKG_VERSION");
         for name in ["-1f/stepscope-motion", "-1f/other", "index-2f/stepscope-motion"] {
@@ -183,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn what_wasm_pack_leaves_out_is_added_once() {
+    fn missing_files_are_added_to_package_json_once() {
         let once = completed(r#"{ "name": "a", "files": ["a.js", "README.md"] }"#).unwrap();
         let package: Value = serde_json::from_str(&once).unwrap();
         let expected = ["a.js", "README.md", "stepscope_wasm_bg.wasm.d.ts", "LICENSE-MIT", "LICENSE-APACHE"];

@@ -8,12 +8,11 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use walkdir::WalkDir;
 
+use crate::build_record::BuildRecord;
 use crate::dist::Parts;
-use crate::made::Made;
-use crate::tools::{Optimise, WasmTools};
-use crate::{dist, docs, headers, package, root, run};
+use crate::tools::{Optimize, WasmTools};
+use crate::{dist, docs, files, headers, package, root, run};
 
 /// Maximum bytes that opening the page loads, compressed by brotli as hosts do.
 const OPENING_BUDGET: usize = 700_000;
@@ -25,52 +24,56 @@ const CRATE: &str = "wasm";
 /// Builds the page once per process, for the steps that share it.
 pub(crate) async fn built() -> Result<&'static Parts> {
     static BUILT: tokio::sync::OnceCell<Parts> = tokio::sync::OnceCell::const_new();
-    BUILT.get_or_try_init(|| shipped(Optimise::Yes)).await
+    BUILT.get_or_try_init(|| shipped(Optimize::Yes)).await
 }
 
-pub(crate) async fn shipped(optimise: Optimise) -> Result<Parts> {
-    build(optimise).await?;
+/// Builds the wasm and the page into `dist/`.
+pub(crate) async fn shipped(optimize: Optimize) -> Result<Parts> {
+    build(optimize).await?;
     dist::make(&root().join("web"), &dist::folder()).await
 }
 
-/// The wasm modules of the page: the folder of each in `web`, and its feature of the crate. The second one loads in the background.
+/// The wasm modules of the page: the folder of each in `web`, and its feature of the crate. The second one loads in the
+/// background.
 pub(crate) const MODULES: [(&str, &str); 2] = [("pkg", "view"), ("pkg-tools", "tools")];
 
-pub(crate) async fn build(optimise: Optimise) -> Result<()> {
-    let tools = WasmTools::ready(optimise).await?;
+pub(crate) async fn build(optimize: Optimize) -> Result<()> {
+    let tools = WasmTools::ready(optimize).await?;
     for (folder, features) in MODULES {
         let package = root().join("web").join(folder);
         let options = ["--no-default-features", "--features", features];
-        let made = made(&tools, &package, &options).await?;
-        if !made.stands()? {
-            made.clear()?;
-            wasm_by(&tools, tools.wasm_pack()?, CRATE, &package, &options).await?;
-            made.keep()?;
+        let record = build_record(&tools, &package, &options).await?;
+        if !record.is_current()? {
+            record.clear()?;
+            build_wasm(&tools, tools.wasm_pack()?, CRATE, &package, &options).await?;
+            record.save()?;
         }
     }
     Ok(())
 }
 
+/// Builds the npm package into the folder `package`.
 pub(crate) async fn npm(package: &Path) -> Result<()> {
-    let tools = WasmTools::ready(Optimise::Yes).await?;
-    let made = made(&tools, package, &[]).await?;
-    if !made.stands()? {
-        made.clear()?;
-        wasm_by(&tools, tools.wasm_pack()?, CRATE, package, &[]).await?;
+    let tools = WasmTools::ready(Optimize::Yes).await?;
+    let record = build_record(&tools, package, &[]).await?;
+    if !record.is_current()? {
+        record.clear()?;
+        build_wasm(&tools, tools.wasm_pack()?, CRATE, package, &[]).await?;
         package::complete(package)?;
-        made.keep()?;
+        record.save()?;
     }
     Ok(())
 }
 
 const SOURCES: [&str; 4] = ["core", CRATE, "LICENSE-MIT", "LICENSE-APACHE"];
 
-/// wasm-pack is slow, so it is skipped if nothing has changed.
-async fn made<'a>(tools: &WasmTools, package: &'a Path, options: &[&str]) -> Result<Made<'a>> {
-    Made::of(package, &SOURCES, &[&tools.words(), options].concat()).await
+/// wasm-pack is slow, so builds are skipped if nothing has changed.
+async fn build_record<'a>(tools: &WasmTools, package: &'a Path, options: &[&str]) -> Result<BuildRecord<'a>> {
+    BuildRecord::of(package, &SOURCES, &[&tools.identity(), options].concat()).await
 }
 
-pub(crate) async fn wasm_by(
+/// Runs wasm-pack on the crate in `folder`, with the output in `package`.
+pub(crate) async fn build_wasm(
     tools: &WasmTools,
     mut command: tokio::process::Command,
     folder: &str,
@@ -90,7 +93,7 @@ struct Sizes {
 }
 
 impl Sizes {
-    /// Compressed as a static host does at its best settings.
+    /// Compressed like a static host at its best settings.
     fn of(bytes: &[u8]) -> Result<Self> {
         let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
         gzip.write_all(bytes)?;
@@ -119,14 +122,14 @@ pub(crate) struct Weights {
     opening: Weight,
     /// A file may be counted under several parts.
     later: Vec<(String, Weight)>,
-    /// Files that are only kept for use without a network.
-    beside: Weight,
+    /// Files only for use without a network.
+    offline: Weight,
 }
 
 impl Weights {
     /// All files of the page, each once.
     fn total(&self) -> Sizes {
-        let parts = self.later.iter().map(|(_, part)| part).chain([&self.opening, &self.beside]);
+        let parts = self.later.iter().map(|(_, part)| part).chain([&self.opening, &self.offline]);
         let files: BTreeMap<_, _> =
             parts.flat_map(|part| &part.files).map(|(name, sizes)| (name, *sizes)).collect();
         files.into_values().fold(Sizes::default(), Sizes::plus)
@@ -136,8 +139,8 @@ impl Weights {
     pub(crate) fn within_budget(&self) -> Result<()> {
         let opening = ("the first load", self.opening.sum().brotli, OPENING_BUDGET);
         let all = ("the whole page", self.total().brotli, TOTAL_BUDGET);
-        for (name, weight, most) in [opening, all] {
-            ensure!(weight <= most, "{name} is {weight} bytes compressed; the maximum is {most}");
+        for (name, size, max) in [opening, all] {
+            ensure!(size <= max, "{name} is {size} bytes compressed; the maximum is {max}");
         }
         Ok(())
     }
@@ -148,7 +151,7 @@ impl fmt::Display for Weights {
         let later = self.later.iter().map(|(name, part)| (format!("later: {name}"), part));
         let mut parts: Vec<_> =
             std::iter::once(("the page".to_owned(), &self.opening)).chain(later).collect();
-        parts.push(("other files".to_owned(), &self.beside));
+        parts.push(("other files".to_owned(), &self.offline));
         let names = parts.iter().flat_map(|(name, part)| {
             std::iter::once(name.len()).chain(part.files.iter().map(|(file, _)| file.len() + 2))
         });
@@ -168,20 +171,19 @@ impl fmt::Display for Weights {
 
 pub(crate) fn weigh(dist: &Path, parts: &Parts) -> Result<Weights> {
     let mut all = BTreeMap::new();
-    for entry in WalkDir::new(dist) {
-        let entry = entry.with_context(|| format!("{} can't be read", dist.display()))?;
+    for entry in files::below(dist)? {
         // Hosts do not send the file of their own rules, and the page never loads the documentation.
-        let apart = entry.file_name() == headers::FILE || entry.path().starts_with(dist.join(docs::FOLDER));
-        if entry.file_type().is_file() && !apart {
-            let bytes = std::fs::read(entry.path())
-                .with_context(|| format!("{} can't be read", entry.path().display()))?;
+        let is_separate =
+            entry.file_name() == headers::FILE || entry.path().starts_with(dist.join(docs::FOLDER));
+        if !is_separate {
+            let bytes = files::read_bytes(entry.path())?;
             let path = entry.path().strip_prefix(dist).unwrap_or(entry.path());
             let names: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
             all.insert(names.join("/"), Sizes::of(&bytes)?);
         }
     }
     let weight = |files: &BTreeSet<String>| -> Result<Weight> {
-        let sizes = |file: &String| all.get(file).copied().with_context(|| format!("{file} is not there"));
+        let sizes = |file: &String| all.get(file).copied().with_context(|| format!("{file} does not exist"));
         let files: Result<_> = files.iter().map(|file| Ok((file.clone(), sizes(file)?))).collect();
         Ok(Weight { files: files? })
     };
@@ -191,7 +193,7 @@ pub(crate) fn weigh(dist: &Path, parts: &Parts) -> Result<Weights> {
     for file in parts.later.values().chain([&parts.opening]).flatten() {
         all.remove(file);
     }
-    Ok(Weights { opening, later: later?, beside: Weight { files: all.into_iter().collect() } })
+    Ok(Weights { opening, later: later?, offline: Weight { files: all.into_iter().collect() } })
 }
 
 #[cfg(test)]
@@ -200,7 +202,7 @@ mod tests {
 
     /// The bench must measure the same build as the page.
     #[test]
-    fn wasm_opt_does_the_same_for_the_bench_and_for_the_page() {
+    fn wasm_opt_has_the_same_options_for_the_bench_and_the_page() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
         let [page, bench] = [CRATE, "tests/bench"].map(|folder| {
             let manifest = std::fs::read_to_string(root.join(folder).join("Cargo.toml")).unwrap();
@@ -211,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_beyond_its_budget_is_refused_with_both_numbers() {
+    fn a_size_above_its_budget_is_an_error_with_both_numbers() {
         for (opening, later, expected) in [
             (700_000, 600_000, None),
             (700_001, 0, Some("the first load is 700001 bytes compressed; the maximum is 700000")),
@@ -222,15 +224,18 @@ mod tests {
             };
             // A file of several parts counts once.
             let later = ["one.js", "two.js"].map(|name| (name.to_owned(), file("shared", later)));
-            let weights =
-                Weights { opening: file("opening", opening), later: later.into(), beside: Weight::default() };
+            let weights = Weights {
+                opening: file("opening", opening),
+                later: later.into(),
+                offline: Weight::default(),
+            };
             let error = weights.within_budget().err().map(|error| error.to_string());
             assert_eq!(error.as_deref(), expected);
         }
     }
 
     #[test]
-    fn what_opening_the_page_loads_is_summed_apart_from_each_later_part_and_what_is_kept_beside() {
+    fn sizes_are_summed_for_the_opening_each_later_part_and_offline_files() {
         let dist = std::env::temp_dir().join(format!("stepscope-weigh-{}", std::process::id()));
         std::fs::create_dir_all(dist.join("assets")).unwrap();
         std::fs::create_dir_all(dist.join("docs")).unwrap();
@@ -253,10 +258,10 @@ mod tests {
         assert_eq!(weights.opening.sum().raw, 2000);
         assert!(weights.opening.sum().gzip < 150 && weights.opening.sum().brotli < 150);
         assert_eq!(weights.later.iter().map(|(_, part)| part.sum().raw).collect::<Vec<_>>(), [1000, 2000]);
-        assert_eq!(weights.beside.files.iter().map(|(name, _)| name).collect::<Vec<_>>(), ["icon.png"]);
+        assert_eq!(weights.offline.files.iter().map(|(name, _)| name).collect::<Vec<_>>(), ["icon.png"]);
         assert!(weights.to_string().contains("later: two.js "), "{weights}");
         std::fs::remove_file(dist.join("assets/c.js")).unwrap();
-        assert_eq!(weigh(&dist, &parts).err().unwrap().to_string(), "assets/c.js is not there");
+        assert_eq!(weigh(&dist, &parts).err().unwrap().to_string(), "assets/c.js does not exist");
         std::fs::remove_dir_all(&dist).unwrap();
     }
 }

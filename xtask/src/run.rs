@@ -1,5 +1,5 @@
 //! Child processes without standard input, each in its own process group. The whole group ends with the child, so that no
-//! browser or driver is left running.
+//! browser or driver keeps running.
 
 use std::io::{self, PipeReader, Read, Write};
 use std::path::Path;
@@ -12,9 +12,9 @@ use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::process::Command;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
-use crate::aside;
+use crate::output_buffer;
 
-/// A program that prints nothing for this long hangs. Total times are not limited, for slow machines.
+/// A program that prints nothing for this time is stopped. Total times are not limited, for slow machines.
 pub(crate) const SILENCE: Duration = Duration::from_secs(10 * 60);
 /// Maximum time of a child whose output goes to a file.
 pub(crate) const LIMIT: Duration = Duration::from_secs(2 * 60 * 60);
@@ -30,18 +30,20 @@ impl Group {
         let output = self.0.stdout().take().context("the output is not piped")?;
         let mut lines = BufReader::new(output).lines();
         let line = tokio::time::timeout(SILENCE, lines.next_line()).await;
-        line.context("it printed nothing for ten minutes")??.context("it ended without output")
+        line.context("no output within ten minutes")??.context("no output")
     }
 
-    pub(crate) async fn ended(&mut self) -> Result<()> {
-        let status = self.0.wait().await.context("it was lost")?;
+    /// Waits for the end; an error if the child fails.
+    pub(crate) async fn wait(&mut self) -> Result<()> {
+        let status = self.0.wait().await.context("waiting for the child failed")?;
         if !status.success() {
-            bail!("it failed ({status})");
+            bail!("the child failed ({status})");
         }
         Ok(())
     }
 
-    pub(crate) async fn end(mut self) -> Result<()> {
+    /// Kills the group.
+    pub(crate) async fn kill(mut self) -> Result<()> {
         self.0.start_kill()?;
         self.0.wait().await?;
         Ok(())
@@ -54,6 +56,7 @@ impl Drop for Group {
     }
 }
 
+/// Starts a child in its own process group.
 pub(crate) fn start(mut command: Command) -> Result<Group> {
     let name = name(&command);
     command.stdin(Stdio::null());
@@ -67,12 +70,12 @@ pub(crate) fn start(mut command: Command) -> Result<Group> {
 
 /// Runs `command` to its end; an error if it can't be started, fails, or prints nothing for [`SILENCE`].
 pub(crate) async fn to_end(command: Command) -> Result<()> {
-    watched(command, Some(SILENCE)).await
+    run_watched(command, Some(SILENCE)).await
 }
 
 /// As [`to_end`], but without a limit: cargo prints nothing while it compiles a large crate.
 pub(crate) async fn compile(command: Command) -> Result<()> {
-    watched(command, None).await
+    run_watched(command, None).await
 }
 
 /// Runs a call of `cargo test`: first compiles all of it, then runs it like [`to_end`].
@@ -108,12 +111,13 @@ pub(crate) async fn within(command: Command, limit: Duration) -> Result<()> {
     succeeded(&name, status)
 }
 
-async fn watched(mut command: Command, silence: Option<Duration>) -> Result<()> {
+/// Runs `command` and prints its output; stops it after `silence` without output.
+async fn run_watched(mut command: Command, silence: Option<Duration>) -> Result<()> {
     let name = name(&command);
-    let mut chunks = passed_on(&mut command)?;
+    let mut chunks = forward_output(&mut command)?;
     let mut group = start(command)?;
     let status = unless_silent(group.0.wait(), &mut chunks, silence).await;
-    // The rest of the group would hold the output open.
+    // Other processes of the group would keep the output open.
     drop(group);
     let status = status.map_err(|silence| {
         anyhow::anyhow!("{name} printed nothing for {} s and was stopped", silence.as_secs_f64())
@@ -123,13 +127,14 @@ async fn watched(mut command: Command, silence: Option<Duration>) -> Result<()> 
 }
 
 fn succeeded(name: &str, status: io::Result<std::process::ExitStatus>) -> Result<()> {
-    let status = status.with_context(|| format!("{name} was lost"))?;
+    let status = status.with_context(|| format!("waiting for {name} failed"))?;
     if !status.success() {
         bail!("{name} failed ({status})");
     }
     Ok(())
 }
 
+/// The result of `end`, or an error after `silence` without a chunk of output.
 async fn unless_silent<T>(
     end: impl Future<Output = T>,
     chunks: &mut UnboundedReceiver<()>,
@@ -142,49 +147,50 @@ async fn unless_silent<T>(
     let mut is_open = true;
     loop {
         tokio::select! {
-            ended = &mut end => return Ok(ended),
+            result = &mut end => return Ok(result),
             chunk = chunks.recv(), if is_open => is_open = chunk.is_some(),
             () = tokio::time::sleep(silence) => return Err(silence),
         }
     }
 }
 
-/// Passes on the command's output to the terminal or the step's buffer; sends a message per chunk.
-fn passed_on(command: &mut Command) -> Result<UnboundedReceiver<()>> {
-    let (heard, chunks) = unbounded_channel();
-    let (out, out_end) = io::pipe().context("a pipe can't be made")?;
-    if let Some(file) = aside::file()? {
+/// Forwards the command's output to the terminal or to the buffer of the step; sends a message per chunk.
+fn forward_output(command: &mut Command) -> Result<UnboundedReceiver<()>> {
+    let (activity, chunks) = unbounded_channel();
+    let (out, out_end) = io::pipe().context("a pipe can't be created")?;
+    if let Some(file) = output_buffer::file()? {
         command.stdout(out_end.try_clone()?).stderr(out_end);
-        pass_on(out, file, heard);
+        forward(out, file, activity);
     } else {
-        let (errors, errors_end) = io::pipe().context("a pipe can't be made")?;
+        let (errors, errors_end) = io::pipe().context("a pipe can't be created")?;
         command.stdout(out_end).stderr(errors_end);
         if io::IsTerminal::is_terminal(&io::stderr()) {
             command.env("CARGO_TERM_COLOR", "always");
         }
-        pass_on(out, io::stdout(), heard.clone());
-        pass_on(errors, io::stderr(), heard);
+        forward(out, io::stdout(), activity.clone());
+        forward(errors, io::stderr(), activity);
     }
     Ok(chunks)
 }
 
-fn pass_on(mut from: PipeReader, mut to: impl Write + Send + 'static, heard: UnboundedSender<()>) {
+fn forward(mut from: PipeReader, mut to: impl Write + Send + 'static, activity: UnboundedSender<()>) {
     std::thread::spawn(move || {
         let mut bytes = [0; 1 << 13];
         while let Ok(len @ 1..) = from.read(&mut bytes) {
             // A closed terminal does not end the work.
             let _ = to.write_all(bytes.get(..len).unwrap_or_default()).and_then(|()| to.flush());
-            let _ = heard.send(());
+            let _ = activity.send(());
         }
     });
 }
 
+/// The command line for messages.
 fn name(command: &Command) -> String {
     let command = command.as_std();
     let program = Path::new(command.get_program());
     let program = program.file_stem().unwrap_or(program.as_os_str());
     let words: Vec<_> =
-        std::iter::once(program).chain(command.get_args()).map(|it| it.to_string_lossy()).collect();
+        std::iter::once(program).chain(command.get_args()).map(|word| word.to_string_lossy()).collect();
     format!("`{}`", words.join(" "))
 }
 
@@ -195,6 +201,7 @@ pub(crate) async fn output(mut command: Command) -> Option<String> {
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
+/// Waits for a signal to end; returns the exit code.
 #[cfg(unix)]
 pub(crate) async fn interrupted() -> Result<u8> {
     use tokio::signal::unix::{SignalKind, signal};
@@ -235,7 +242,8 @@ mod tests {
     #[tokio::test]
     async fn a_silent_child_is_stopped_with_its_children() {
         let (mut reader, writer) = std::io::pipe().unwrap();
-        let error = watched(shell("sleep 1000 & wait"), Some(Duration::from_millis(300))).await.unwrap_err();
+        let error =
+            run_watched(shell("sleep 1000 & wait"), Some(Duration::from_millis(300))).await.unwrap_err();
         assert!(error.to_string().ends_with("` printed nothing for 0.3 s and was stopped"), "{error}");
         let mut command = shell("sleep 1000 & wait");
         command.stdout(writer);
@@ -245,24 +253,24 @@ mod tests {
         let (ended, end) = tokio::sync::oneshot::channel();
         std::thread::spawn(move || ended.send(std::io::Read::read_to_end(&mut reader, &mut Vec::new())));
         let end = tokio::time::timeout(Duration::from_secs(60), end).await;
-        assert!(matches!(end, Ok(Ok(Ok(0)))), "the grandchild lived on: {end:?}");
+        assert!(matches!(end, Ok(Ok(Ok(0)))), "the grandchild still runs: {end:?}");
     }
 
     #[tokio::test]
-    async fn a_child_reads_nothing() {
+    async fn a_child_has_no_input() {
         to_end(shell("! read line")).await.unwrap();
     }
 
-    /// Time passes at once while nothing else is to be done.
+    /// In paused time, sleeps end at once while no task can run.
     #[tokio::test(start_paused = true)]
-    async fn a_silent_download_or_check_is_stopped_and_a_compiler_is_not() {
+    async fn a_silent_program_is_stopped_but_a_compiler_is_not() {
         let error = to_end(shell("sleep 30")).await.unwrap_err();
         assert!(error.to_string().ends_with("` printed nothing for 600 s and was stopped"), "{error}");
         compile(shell("sleep 0.1")).await.unwrap();
     }
 
     #[tokio::test(start_paused = true)]
-    async fn only_silence_ends_a_program() {
+    async fn a_program_that_prints_may_take_any_time() {
         const SILENCE: Duration = Duration::from_secs(600);
         let (sender, mut chunks) = unbounded_channel();
         // Two hours of work that prints every nine minutes.
@@ -283,21 +291,21 @@ mod tests {
     }
 
     #[tokio::test(start_paused = true)]
-    async fn silence_does_not_end_a_compiler() {
+    async fn without_a_limit_silence_is_accepted() {
         let (_sender, mut chunks) = unbounded_channel();
         let compiles = tokio::time::sleep(Duration::from_secs(7200));
         assert_eq!(unless_silent(compiles, &mut chunks, None).await, Ok(()));
     }
 
     #[test]
-    fn cargo_test_compiles_the_tests_that_it_runs() {
+    fn compiling_selects_the_same_tests() {
         let rows = [
             ("test --workspace --locked", "test --workspace --locked --no-run"),
             ("test --test page -- --skip engines::", "test --test page --no-run"),
         ];
         for (given, expected) in rows {
             let mut command = Command::new("cargo");
-            command.args(given.split(' ')).env("NAME", "value").env_remove("GONE").current_dir("..");
+            command.args(given.split(' ')).env("SET", "value").env_remove("REMOVED").current_dir("..");
             let compiling = only_compiling(&command);
             assert_eq!(name(&compiling), format!("`cargo {expected}`"));
             let (given, compiling) = (command.as_std(), compiling.as_std());

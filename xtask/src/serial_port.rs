@@ -1,5 +1,5 @@
-//! Provides a serial port for the page's tests: a pseudo-terminal mounted over `/dev/ttyS0` in a mount namespace of
-//! Chromium. Prints what is missing on machines that cannot do this.
+//! Provides a serial port for tests of the page: a pseudo-terminal mounted over `/dev/ttyS0` in a mount namespace of
+//! Chromium. On machines where this is impossible, it reports what is missing.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -10,23 +10,24 @@ use tokio::process::Command;
 use crate::{apt, run, toolchain};
 
 pub(crate) const COMMAND: &str = "STEPSCOPE_COMMAND";
-/// Chromium accepts only ports of known drivers, and this is one.
+/// A port with a driver that Chromium accepts.
 const PORT: &str = "/dev/ttyS0";
 const DRIVERS: &str = "/proc/tty/drivers";
 /// Chromium's folder of policies, replaced in the namespace.
 const POLICIES: &str = "/etc/chromium";
 const TRIAL: &str = "mount --bind /dev/null /dev/ttyS0 && mount -t tmpfs none /etc/chromium";
 
+/// An error that states what is missing, if the tests are impossible here.
 pub(crate) async fn possible() -> Result<()> {
     let drivers = fs::read_to_string(DRIVERS).with_context(|| format!("{DRIVERS} can't be read"))?;
     ensure!(has_serial_ports(&drivers), "{DRIVERS} has no driver of serial ports /dev/ttyS");
-    ensure!(Path::new(PORT).exists(), "there is no {PORT}");
-    ensure!(Path::new(POLICIES).is_dir(), "there is no {POLICIES}, where Chromium would find a policy");
-    ensure!(apt::is_root(), "only root mounts");
+    ensure!(Path::new(PORT).exists(), "{PORT} does not exist");
+    ensure!(Path::new(POLICIES).is_dir(), "{POLICIES}, the folder of Chromium's policies, does not exist");
+    ensure!(apt::is_root(), "only root can mount");
     which::which("unshare").context("unshare (of util-linux) is not on PATH")?;
     let mut trial = Command::new("unshare");
     trial.args(["--mount", "--propagation", "private", "sh", "-c", TRIAL]);
-    run::output(trial).await.context("nothing can be mounted in a namespace of its own")?;
+    run::output(trial).await.context("mounting in a namespace failed")?;
     Ok(())
 }
 
@@ -37,13 +38,14 @@ fn has_serial_ports(drivers: &str) -> bool {
     })
 }
 
+/// The path of the command, built.
 pub(crate) async fn command() -> Result<PathBuf> {
     let mut build = toolchain::cargo();
     build.args(["build", "--workspace", "--bin", "stepscope", "--locked"]);
     run::compile(build).await?;
     let this = crate::THIS_PROGRAM.as_ref().context("this program's own path is unknown")?;
     let command = this.with_file_name(format!("stepscope{}", env::consts::EXE_SUFFIX));
-    ensure!(command.exists(), "cargo built no {}", command.display());
+    ensure!(command.exists(), "cargo did not build {}", command.display());
     Ok(command)
 }
 
@@ -52,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_machine_has_serial_ports_where_the_kernel_lists_their_driver() {
+    fn serial_ports_are_found_in_the_kernel_list_of_drivers() {
         for (drivers, expected) in [
             ("serial               /dev/ttyS       4      64 serial\n", true),
             ("/dev/tty /dev/tty 5 0 system:/dev/tty\nserial /dev/ttyS 4 64-67 serial\n", true),

@@ -13,13 +13,14 @@ use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use tower_http::services::ServeDir;
 
+use crate::files;
 use crate::headers::{FILE, Headers};
 
 pub(crate) fn bind(port: u16) -> Result<TcpListener> {
     match TcpListener::bind((Ipv4Addr::LOCALHOST, port)) {
         Ok(listener) => Ok(listener),
         Err(error) if error.kind() == ErrorKind::AddrInUse => bail!(
-            "port {port} on 127.0.0.1 is taken; choose another with --port N, or let --port 0 take any free one"
+            "port {port} on 127.0.0.1 is in use; use another with --port N, or any free one with --port 0"
         ),
         Err(error) => Err(error).with_context(|| format!("port {port} on 127.0.0.1 can't be opened")),
     }
@@ -27,7 +28,7 @@ pub(crate) fn bind(port: u16) -> Result<TcpListener> {
 
 pub(crate) async fn serve(listener: TcpListener, web: &Path, open: bool) -> Result<()> {
     let file = web.join(FILE);
-    let text = std::fs::read_to_string(&file).with_context(|| format!("{} can't be read", file.display()))?;
+    let text = files::read(&file)?;
     let router = router(web, Headers::parse(&text)?);
     let address = format!("http://{}/", listener.local_addr()?);
     listener.set_nonblocking(true)?;
@@ -37,21 +38,23 @@ pub(crate) async fn serve(listener: TcpListener, web: &Path, open: bool) -> Resu
         && has_desktop()
         && let Err(error) = open::that_detached(&address)
     {
-        eprintln!("no browser opened by itself ({error}); open {address} by hand");
+        eprintln!("the browser could not be opened ({error}); open {address} yourself");
     }
     axum::serve(listener, router).await.context("the server stopped")
 }
 
 fn has_desktop() -> bool {
-    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    !cfg!(target_os = "linux") || set("DISPLAY") || set("WAYLAND_DISPLAY")
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
 }
 
 fn router(web: &Path, headers: Headers) -> Router {
-    Router::new().fallback_service(ServeDir::new(web)).layer(from_fn_with_state(Arc::new(headers), dress))
+    Router::new()
+        .fallback_service(ServeDir::new(web))
+        .layer(from_fn_with_state(Arc::new(headers), add_headers))
 }
 
-async fn dress(State(headers): State<Arc<Headers>>, request: Request, next: Next) -> Response {
+async fn add_headers(State(headers): State<Arc<Headers>>, request: Request, next: Next) -> Response {
     let path = request.uri().path().to_owned();
     let mut response = if path.strip_prefix('/') == Some(FILE) {
         StatusCode::NOT_FOUND.into_response()
@@ -73,19 +76,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_taken_port_is_named_with_the_remedy() {
+    fn a_port_in_use_is_reported_with_the_remedy() {
         let first = bind(0).unwrap();
         let port = first.local_addr().unwrap().port();
         assert_eq!(
             bind(port).unwrap_err().to_string(),
             format!(
-                "port {port} on 127.0.0.1 is taken; choose another with --port N, or let --port 0 take any free one"
+                "port {port} on 127.0.0.1 is in use; use another with --port N, or any free one with --port 0"
             )
         );
     }
 
     #[tokio::test]
-    async fn every_answer_has_its_type_and_the_headers_of_its_path() {
+    async fn every_response_has_its_type_and_the_headers_of_its_path() {
         let web = std::env::temp_dir().join(format!("stepscope-serve-{}", std::process::id()));
         std::fs::create_dir_all(web.join("pkg")).unwrap();
         for name in ["index.html", "app.js", "page.css", "pkg/a.wasm", "app.webmanifest", "_headers"] {

@@ -1,17 +1,17 @@
-//! Checks of the page's sources outside of a browser: format, lints, types, and the unit tests of its models.
+//! Checks the page's sources outside of a browser: format, lints, types, and the unit tests of its models.
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use tokio::process::Command;
 
-use crate::npm::{self, Npm};
-use crate::{root, run};
+use crate::npm::{self, NpmPackage};
+use crate::{files, root, run};
 
 const TESTS: &str = "tests/scripts";
 const TEST_ENDING: &str = ".test.mjs";
-const BIOME: Npm = Npm { package: "@biomejs/biome", version: "2.6.8" };
-const TYPESCRIPT: Npm = Npm { package: "typescript", version: "7.0.2" };
+const BIOME: NpmPackage = NpmPackage { package: "@biomejs/biome", version: "2.6.8" };
+const TYPESCRIPT: NpmPackage = NpmPackage { package: "typescript", version: "7.0.2" };
 
 pub(crate) async fn format() -> Result<()> {
     biome(&["check", "--linter-enabled=false", "--write"]).await
@@ -34,23 +34,15 @@ pub(crate) async fn check_types() -> Result<()> {
 pub(crate) async fn test() -> Result<()> {
     // Node's versions differ in how they search a folder, so each file is named.
     let files = tests()?;
-    ensure!(!files.is_empty(), "{TESTS} holds no *{TEST_ENDING}");
+    ensure!(!files.is_empty(), "{TESTS} contains no *{TEST_ENDING}");
     let mut command = Command::new(npm::node_program("node").await?);
     command.args(["--test", "--test-reporter=spec"]).args(files);
     run::to_end(command).await
 }
 
 fn tests() -> Result<Vec<PathBuf>> {
-    let folder = root().join(TESTS);
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(&folder).with_context(|| format!("{} can't be read", folder.display()))? {
-        let path = entry?.path();
-        if path.to_string_lossy().ends_with(TEST_ENDING) {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
+    let paths = files::below(&root().join(TESTS))?.into_iter().map(walkdir::DirEntry::into_path);
+    Ok(paths.filter(|path| path.to_string_lossy().ends_with(TEST_ENDING)).collect())
 }
 
 async fn biome(arguments: &[&str]) -> Result<()> {

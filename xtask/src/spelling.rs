@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use tokio::process::Command;
 
-use crate::aside::say;
+use crate::output_buffer::print_line;
 use crate::tools::cache;
 use crate::{root, run};
 
@@ -48,7 +48,7 @@ async fn codespell() -> Result<PathBuf> {
     if program.exists() {
         return Ok(program);
     }
-    say(format_args!("installing {CODESPELL} (once)"));
+    print_line(format_args!("installing {CODESPELL} (once)"));
     let remedy = "the spelling check needs Python 3.9 or newer with venv and pip (Debian: `apt-get install python3-venv` as root)";
     let mut command = Command::new(which::which("python3").context(remedy)?);
     command.args(["-m", "venv", "--clear"]).arg(&home);

@@ -10,12 +10,12 @@ use anyhow::{Context, Result, ensure};
 use clap::ValueEnum;
 use tokio::process::Command;
 
-use crate::aside::{self, say};
 use crate::browser::{self, Browser};
 use crate::dist::Parts;
 use crate::engines::{self, Firefox, WebKit};
+use crate::output_buffer::{self, print_line};
 use crate::toolchain::{self, BARE_METAL, WASM};
-use crate::tools::{Optimise, WasmTools};
+use crate::tools::{Optimize, WasmTools};
 use crate::{
     avr, bare_metal, dist, docs, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
     spelling, words,
@@ -23,7 +23,7 @@ use crate::{
 
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];
 
-/// The steps in their order (see [`ROWS`]); those that fail fastest come first.
+/// The steps in the order of [`ROWS`]; those that fail fastest come first.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Step {
     /// Format of all sources, by rustfmt and Biome
@@ -107,7 +107,7 @@ impl Step {
             Self::BareMetal => bare_metal::test().await,
             Self::Wasm => wasm().await,
             Self::Types => {
-                built_for(self).await?;
+                build_page_for(self).await?;
                 sources::check_types().await
             }
             Self::Package => package::test().await,
@@ -127,11 +127,11 @@ async fn clippy(what: &str) -> Result<()> {
     run::compile(cargo(&format!("clippy {what} --locked -- -D warnings"))).await
 }
 
-/// wasm/webdriver.json holds the browsers' flags.
+/// wasm/webdriver.json has the flags of the browsers.
 async fn wasm() -> Result<()> {
     let browser = Browser::ready().await?;
     let Firefox { firefox: _, geckodriver } = Firefox::ready().await?;
-    let tools = WasmTools::ready(Optimise::No).await?;
+    let tools = WasmTools::ready(Optimize::No).await?;
     let mut command = tools.wasm_pack()?;
     command.args(["test", "--headless", "--chrome", "--chromedriver"]).arg(&browser.chromedriver);
     command.args(["--firefox", "--geckodriver"]).arg(geckodriver);
@@ -148,7 +148,7 @@ async fn page_tests() -> Result<Command> {
     with_page("test --workspace --features stepscope-tests/browser --test page --locked --").await
 }
 
-/// A call of cargo for something that drives the page in Chromium. Its environment names the driver and the files.
+/// A call of cargo for a program that uses the page in Chromium; its environment has the paths of driver and files.
 pub(crate) async fn with_page(line: &str) -> Result<Command> {
     let this = crate::THIS_PROGRAM.as_ref().context("this program's own path is unknown")?;
     let browser = Browser::ready().await?;
@@ -166,13 +166,13 @@ pub(crate) async fn with_page(line: &str) -> Result<Command> {
 const INSTALLED: &str = "offline::the_page_can_be_installed";
 
 async fn page() -> Result<()> {
-    let parts = built_for(Step::Page).await?;
+    let parts = build_page_for(Step::Page).await?;
     let mut command = page_tests().await?;
     let weights = page::weigh(&dist::folder(), parts)?;
-    say(&weights);
+    print_line(&weights);
     weights.within_budget()?;
     command.args(["--skip", "engines::", "--skip", "live_port::", "--skip", INSTALLED]);
-    // A visitor waits at times, so one more than the number of cores keeps them busy.
+    // Tests also wait for the browser, so one more thread than cores keeps the cores busy.
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     command.arg(format!("--test-threads={}", cores + 1));
     command.env("STEPSCOPE_AXE", npm::axe().await?);
@@ -182,7 +182,7 @@ async fn page() -> Result<()> {
 
 /// All three engines or none: a missing one is an error, so that no run passes without it.
 async fn engines() -> Result<()> {
-    built_for(Step::Engines).await?;
+    build_page_for(Step::Engines).await?;
     let Firefox { firefox, geckodriver } = Firefox::ready().await?;
     let webkit = WebKit::ready().await?;
     let mut command = page_tests().await?;
@@ -197,8 +197,8 @@ async fn engines() -> Result<()> {
             judges::socat().await?;
             command.arg("live_port::").env(serial_port::COMMAND, serial_port::command().await?);
         }
-        Err(why) => say(format_args!(
-            "skipped: the page on a port of the system, which this machine cannot have: {why:#}"
+        Err(why) => print_line(format_args!(
+            "skipped: tests of the page with a serial port, impossible on this machine: {why:#}"
         )),
     }
     run::cargo_test(command).await
@@ -240,8 +240,8 @@ pub(crate) async fn run(only: &[Step]) -> Result<()> {
         if lanes[0].is_empty() {
             lanes.reverse();
         }
-        let [front, beside] = lanes;
-        tokio::join!(in_front(&front, &report), beside_it(&beside, &report));
+        let [first, second] = lanes;
+        tokio::join!(run_printed(&first, &report), run_buffered(&second, &report));
     }
     let mut report = report.into_inner();
     report.sort_by_key(|(step, ..)| Step::value_variants().iter().position(|each| each == step));
@@ -250,12 +250,12 @@ pub(crate) async fn run(only: &[Step]) -> Result<()> {
         println!("{:12}{:8.1} s  {outcome}", step.name(), time.as_secs_f64());
     }
     println!("{:12}{:8.1} s", "all", start.elapsed().as_secs_f64());
-    let with = |is_one: fn(&Outcome) -> bool| {
-        let names = report.iter().filter(|(.., outcome)| is_one(outcome)).map(|(step, ..)| step.name());
+    let names_with = |is_wanted: fn(&Outcome) -> bool| {
+        let names = report.iter().filter(|(.., outcome)| is_wanted(outcome)).map(|(step, ..)| step.name());
         names.collect::<Vec<_>>()
     };
-    let failed = with(|outcome| matches!(outcome, Outcome::Failed(_)));
-    let skipped = with(|outcome| matches!(outcome, Outcome::Skipped(_)));
+    let failed = names_with(|outcome| matches!(outcome, Outcome::Failed(_)));
+    let skipped = names_with(|outcome| matches!(outcome, Outcome::Skipped(_)));
     let passed = report.len() - failed.len() - skipped.len();
     println!("{passed} passed, {} failed, {} skipped", failed.len(), skipped.len());
     let mut lists = Vec::new();
@@ -276,8 +276,8 @@ enum Outcome {
 }
 
 impl Outcome {
-    fn of(done: Result<()>) -> Self {
-        match done {
+    fn of(result: Result<()>) -> Self {
+        match result {
             Ok(()) => Self::Passed,
             Err(error) if error.is::<NotBuilt>() => Self::Skipped(error.to_string()),
             Err(error) => Self::Failed(format!("{error:#}")),
@@ -306,7 +306,8 @@ impl fmt::Display for NotBuilt {
 
 impl std::error::Error for NotBuilt {}
 
-async fn built_for(step: Step) -> Result<&'static Parts> {
+/// The page, built once for all steps; an error [`NotBuilt`] if the build failed in an earlier step.
+async fn build_page_for(step: Step) -> Result<&'static Parts> {
     static FAILED_IN: OnceLock<String> = OnceLock::new();
     if let Some(step) = FAILED_IN.get() {
         return Err(NotBuilt(step.clone()).into());
@@ -318,29 +319,29 @@ async fn built_for(step: Step) -> Result<&'static Parts> {
 
 type Report = RefCell<Vec<(Step, Duration, Outcome)>>;
 
-async fn in_front(steps: &[Step], report: &Report) {
+async fn run_printed(steps: &[Step], report: &Report) {
     for step in steps {
         println!("\n=== {}", step.name());
         let start = Instant::now();
-        ended(*step, start, Outcome::of(step.run().await), report);
+        report_end(*step, start, Outcome::of(step.run().await), report);
     }
 }
 
-async fn beside_it(steps: &[Step], report: &Report) {
+async fn run_buffered(steps: &[Step], report: &Report) {
     for step in steps {
         let start = Instant::now();
-        let (outcome, output) = match aside::kept(step.run()).await {
-            Ok((done, output)) => (Outcome::of(done), output),
+        let (outcome, output) = match output_buffer::buffered(step.run()).await {
+            Ok((result, output)) => (Outcome::of(result), output),
             Err(error) => (Outcome::of(Err(error)), Vec::new()),
         };
-        println!("\n=== {}, beside", step.name());
+        println!("\n=== {} (ran in parallel)", step.name());
         // A closed terminal does not end the work.
         let _ = std::io::stdout().write_all(&output);
-        ended(*step, start, outcome, report);
+        report_end(*step, start, outcome, report);
     }
 }
 
-fn ended(step: Step, start: Instant, outcome: Outcome, report: &Report) {
+fn report_end(step: Step, start: Instant, outcome: Outcome, report: &Report) {
     let time = start.elapsed();
     println!("=== {}, after {:.1} s: {outcome}", step.name(), time.as_secs_f64());
     report.borrow_mut().push((step, time, outcome));
@@ -351,13 +352,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_step_stands_in_one_lane_and_in_the_order_of_its_name() {
+    fn the_rows_contain_every_step_in_order() {
         let placed: Vec<_> = ROWS.iter().flatten().copied().flatten().copied().collect();
         assert!(placed == Step::value_variants());
     }
 
     #[test]
-    fn a_step_that_needs_what_could_not_be_built_is_skipped_with_the_reason() {
+    fn a_step_that_needs_a_failed_build_is_skipped_with_the_reason() {
         let rows = [
             (Ok(()), "passed"),
             (
@@ -366,8 +367,8 @@ mod tests {
             ),
             (Err(NotBuilt("types".to_owned()).into()), "skipped: the page's build failed in step types"),
         ];
-        for (done, expected) in rows {
-            assert_eq!(Outcome::of(done).to_string(), expected);
+        for (result, expected) in rows {
+            assert_eq!(Outcome::of(result).to_string(), expected);
         }
     }
 }

@@ -29,19 +29,19 @@ pub(crate) fn ignored_tests(names: &[&str]) -> Command {
 pub(crate) async fn version() -> Result<String> {
     let mut command = Command::new("rustc");
     command.current_dir(root()).arg("-vV");
-    run::output(command).await.context("rustc does not answer")
+    run::output(command).await.context("rustc does not run")
 }
 
 pub(crate) async fn host() -> Result<String> {
-    let answer = version().await?;
-    let host = answer.lines().find_map(|line| line.strip_prefix("host: "));
-    host.map(str::to_owned).context("rustc does not name its host")
+    let version = version().await?;
+    let host = version.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).context("rustc does not report its host")
 }
 
 pub(crate) async fn target(target: &str) -> Result<()> {
     let mut command = Command::new("rustc");
     command.current_dir(root()).args(["--print", "target-libdir", "--target", target]);
-    let folder = run::output(command).await.context("rustc does not answer")?;
+    let folder = run::output(command).await.context("rustc does not run")?;
     if Path::new(folder.trim()).exists() {
         return Ok(());
     }
@@ -64,5 +64,5 @@ async fn rustup(arguments: &[&str]) -> Result<()> {
     command.current_dir(root()).args(arguments);
     run::to_end(command)
         .await
-        .with_context(|| format!("add it by your Rust's own means: {}", arguments.join(" ")))
+        .with_context(|| format!("install it with your distribution of Rust: {}", arguments.join(" ")))
 }

@@ -1,5 +1,5 @@
-//! Installs missing tools, each version once per user in a folder of the user's cache. A tool of the right version on
-//! PATH is used instead.
+//! Installs missing tools, each version once per user into the user cache. A tool of the right version on PATH is used
+//! instead.
 
 use std::env;
 use std::ffi::OsString;
@@ -10,8 +10,8 @@ use etcetera::BaseStrategy;
 use serde::Deserialize;
 use tokio::process::Command;
 
-use crate::aside::say;
-use crate::{root, run, toolchain, wasm_opt};
+use crate::output_buffer::print_line;
+use crate::{files, root, run, toolchain, wasm_opt};
 
 const WASM_PACK: &str = "0.15.1";
 const CARGO_FUZZ: &str = "0.13.2";
@@ -19,7 +19,7 @@ const CARGO_MUTANTS: &str = "27.1.0";
 const GECKODRIVER: &str = "0.37.1";
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Optimise {
+pub(crate) enum Optimize {
     Yes,
     /// The user opted out, or the result is not for users.
     No,
@@ -29,7 +29,7 @@ pub(crate) enum Optimise {
 enum WasmOpt {
     Found,
     FetchedByWasmPack,
-    LeftOut,
+    NotUsed,
 }
 
 pub(crate) struct WasmTools {
@@ -42,12 +42,11 @@ pub(crate) struct WasmTools {
 }
 
 impl WasmTools {
-    pub(crate) async fn ready(optimise: Optimise) -> Result<Self> {
+    pub(crate) async fn ready(optimize: Optimize) -> Result<Self> {
         toolchain::target(toolchain::WASM).await?;
         let cache = cache()?;
         let wasm_pack_cache = cache.join("wasm-pack");
-        std::fs::create_dir_all(&wasm_pack_cache)
-            .with_context(|| format!("{} can't be made", wasm_pack_cache.display()))?;
+        files::create_folder(&wasm_pack_cache)?;
 
         let lock = std::fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock can't be read")?;
         // wasm-bindgen's command and library must have exactly the same version.
@@ -58,11 +57,11 @@ impl WasmTools {
         let mut programs = ready(&cache, &[wasm_pack, wasm_bindgen]).await?;
         let wasm_pack = programs[0].clone();
         let mut wasm_opt_version = String::new();
-        let wasm_opt = match optimise {
-            Optimise::No => WasmOpt::LeftOut,
-            Optimise::Yes => match wasm_opt::ready(&cache).await? {
+        let wasm_opt = match optimize {
+            Optimize::No => WasmOpt::NotUsed,
+            Optimize::Yes => match wasm_opt::ready(&cache).await? {
                 Some(program) => {
-                    wasm_opt_version = version_answer(&program).await.unwrap_or_default();
+                    wasm_opt_version = version_output(&program).await.unwrap_or_default();
                     programs.push(program);
                     WasmOpt::Found
                 }
@@ -85,47 +84,48 @@ impl WasmTools {
         match self.wasm_opt {
             WasmOpt::Found => &["--mode", "no-install"],
             WasmOpt::FetchedByWasmPack => &["--mode", "normal"],
-            WasmOpt::LeftOut => &["--mode", "no-install", "--no-opt"],
+            WasmOpt::NotUsed => &["--mode", "no-install", "--no-opt"],
         }
     }
 
     /// Identifies the build: the options, and the tools' folders, whose names contain versions.
-    pub(crate) fn words(&self) -> Vec<&str> {
+    pub(crate) fn identity(&self) -> Vec<&str> {
         let folders = self.folders.iter().filter_map(|folder| folder.to_str());
         self.build_options().iter().copied().chain(folders).chain([self.wasm_opt_version.as_str()]).collect()
     }
 
     /// wasm-pack reports success even if wasm-opt did not run, so this checks for it.
-    pub(crate) fn check(&self, done: Result<()>) -> Result<()> {
-        let done = done.context("the page was not built");
+    pub(crate) fn check(&self, result: Result<()>) -> Result<()> {
+        let result = result.context("the page was not built");
         match self.wasm_opt {
-            WasmOpt::Found | WasmOpt::LeftOut => done,
-            WasmOpt::FetchedByWasmPack => wasm_opt::check_fetch(done, &self.wasm_pack_cache),
+            WasmOpt::Found | WasmOpt::NotUsed => result,
+            WasmOpt::FetchedByWasmPack => wasm_opt::check_fetch(result, &self.wasm_pack_cache),
         }
     }
 
     fn path(&self) -> Result<OsString> {
-        let rest = env::var_os("PATH").unwrap_or_default();
-        let folders = self.folders.iter().cloned().chain(env::split_paths(&rest));
-        env::join_paths(folders).context("a folder on PATH can't be written there")
+        let path = env::var_os("PATH").unwrap_or_default();
+        let folders = self.folders.iter().cloned().chain(env::split_paths(&path));
+        env::join_paths(folders).context("a folder's name can't be part of PATH")
     }
 }
 
 pub(crate) async fn cargo_fuzz() -> Result<PathBuf> {
     let tool = Tool { package: "cargo-fuzz", program: "cargo-fuzz", version: CARGO_FUZZ.to_owned() };
-    ready(&cache()?, &[tool]).await?.pop().context("cargo-fuzz was lost")
+    ready(&cache()?, &[tool]).await?.pop().context("cargo-fuzz is missing")
 }
 
 pub(crate) async fn cargo_mutants() -> Result<PathBuf> {
     let tool = Tool { package: "cargo-mutants", program: "cargo-mutants", version: CARGO_MUTANTS.to_owned() };
-    ready(&cache()?, &[tool]).await?.pop().context("cargo-mutants was lost")
+    ready(&cache()?, &[tool]).await?.pop().context("cargo-mutants is missing")
 }
 
 pub(crate) async fn geckodriver() -> Result<PathBuf> {
     let tool = Tool { package: "geckodriver", program: "geckodriver", version: GECKODRIVER.to_owned() };
-    ready(&cache()?, &[tool]).await?.pop().context("geckodriver was lost")
+    ready(&cache()?, &[tool]).await?.pop().context("geckodriver is missing")
 }
 
+/// The programs of these tools; installs those that are missing.
 async fn ready(cache: &Path, tools: &[Tool]) -> Result<Vec<PathBuf>> {
     let mut programs = Vec::new();
     let mut installed = false;
@@ -158,7 +158,7 @@ impl Tool {
     async fn find(&self, cache: &Path) -> Option<PathBuf> {
         let own = find(self.program, &self.home(cache).join("bin"));
         for program in [own, which::which(self.program).ok()].into_iter().flatten() {
-            if self.fits(&program).await {
+            if self.has_version(&program).await {
                 return Some(program);
             }
         }
@@ -167,7 +167,7 @@ impl Tool {
 
     async fn install(&self, cache: &Path) -> Result<PathBuf> {
         let home = self.home(cache);
-        say(format_args!("installing {} {} (once; a minute or two)", self.package, self.version));
+        print_line(format_args!("installing {} {} (once; a minute or two)", self.package, self.version));
         let mut command = toolchain::cargo();
         command.args(["install", "--force", "--locked", self.package]);
         command.args(["--version", &self.version, "--root"]).arg(&home);
@@ -180,24 +180,25 @@ impl Tool {
         run::compile(command).await?;
         let program = find(self.program, &home.join("bin")).context("cargo installed it elsewhere")?;
         ensure!(
-            self.fits(&program).await,
-            "{} was installed but does not answer as version {}",
+            self.has_version(&program).await,
+            "{} was installed but does not report version {}",
             program.display(),
             self.version
         );
         Ok(program)
     }
 
-    async fn fits(&self, program: &Path) -> bool {
-        let answer = match version_answer(program).await {
-            Some(answer) => answer,
+    async fn has_version(&self, program: &Path) -> bool {
+        let output = match version_output(program).await {
+            Some(output) => output,
             None => version_of_subcommand(program).await.unwrap_or_default(),
         };
-        answer.split_whitespace().nth(1) == Some(self.version.as_str())
+        output.split_whitespace().nth(1) == Some(self.version.as_str())
     }
 }
 
-pub(crate) async fn version_answer(program: &Path) -> Option<String> {
+/// The output of `--version`; `None` if the program fails.
+pub(crate) async fn version_output(program: &Path) -> Option<String> {
     let mut command = Command::new(program);
     command.arg("--version");
     run::output(command).await
@@ -210,13 +211,14 @@ async fn version_of_subcommand(program: &Path) -> Option<String> {
     run::output(command).await
 }
 
+/// The program in this folder.
 pub(crate) fn find(program: &str, folder: &Path) -> Option<PathBuf> {
     which::which_in(program, Some(folder), root()).ok()
 }
 
+/// The folder for tools in the user cache.
 pub(crate) fn cache() -> Result<PathBuf> {
-    let strategy =
-        etcetera::base_strategy::choose_native_strategy().context("the user has no home folder")?;
+    let strategy = etcetera::base_strategy::choose_native_strategy().context("there is no home folder")?;
     Ok(strategy.cache_dir().join("stepscope"))
 }
 
@@ -224,6 +226,7 @@ fn build_folder(cache: &Path) -> PathBuf {
     cache.join("build")
 }
 
+/// The only version of a package in a lock file.
 fn locked_version(lock: &str, package: &str) -> Result<String> {
     #[derive(Deserialize)]
     struct Lock {
@@ -234,8 +237,8 @@ fn locked_version(lock: &str, package: &str) -> Result<String> {
         name: String,
         version: String,
     }
-    let lock: Lock = toml::from_str(lock).context("Cargo.lock is not what it should be")?;
-    let mut versions = lock.package.into_iter().filter(|it| it.name == package).map(|it| it.version);
+    let lock: Lock = toml::from_str(lock).context("Cargo.lock is invalid")?;
+    let mut versions = lock.package.into_iter().filter(|one| one.name == package).map(|one| one.version);
     let version = versions.next().with_context(|| format!("Cargo.lock has no {package}"))?;
     ensure!(versions.next().is_none(), "Cargo.lock has {package} in two versions; the page can use only one");
     Ok(version)
@@ -246,7 +249,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_lock_file_tells_the_one_version() {
+    fn the_only_version_in_a_lock_file_is_found() {
         let entry =
             |name: &str, version: &str| format!("[[package]]\nname = \"{name}\"\nversion = \"{version}\"\n");
         let lock = |entries: &[(&str, &str)]| {
@@ -261,7 +264,7 @@ mod tests {
                 lock(&[("wasm-bindgen", "0.2.1"), ("wasm-bindgen", "0.2.2")]),
                 "Cargo.lock has wasm-bindgen in two versions",
             ),
-            ("package = 1".to_owned(), "Cargo.lock is not what it should be"),
+            ("package = 1".to_owned(), "Cargo.lock is invalid"),
         ] {
             let error = locked_version(&text, "wasm-bindgen").unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");

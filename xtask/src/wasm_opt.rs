@@ -8,39 +8,39 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
-use crate::aside::say;
-use crate::npm::Npm;
-use crate::tools::{find, version_answer};
+use crate::npm::NpmPackage;
+use crate::output_buffer::print_line;
+use crate::tools::{find, version_output};
 
 const BINARYEN: &str = "132.0.0";
-/// The version that wasm-pack 0.15.1 downloads.
+/// As wasm-pack 0.15.1 downloads.
 const MIN_VERSION: u32 = 130;
 
 pub(crate) async fn ready(cache: &Path) -> Result<Option<PathBuf>> {
-    let npm = Npm { package: "binaryen", version: BINARYEN };
+    let npm = NpmPackage { package: "binaryen", version: BINARYEN };
     let own = npm.modules(cache).join(".bin");
     let on_path = which::which("wasm-opt").ok();
     for program in [find("wasm-opt", &own), on_path.clone()].into_iter().flatten() {
-        if fits(&program).await {
+        if is_recent(&program).await {
             return Ok(Some(program));
         }
     }
     if which::which("npm").is_ok() {
         npm.install(cache).await.with_context(remedy)?;
         let program = find("wasm-opt", &own).with_context(remedy)?;
-        ensure!(fits(&program).await, "{} does not run; {}", program.display(), remedy());
+        ensure!(is_recent(&program).await, "{} does not run; {}", program.display(), remedy());
         return Ok(Some(program));
     }
     if let Some(old) = on_path {
-        bail!("{} is too old and would break the page without a word; {}", old.display(), remedy());
+        bail!("{} is too old and would silently break the page; {}", old.display(), remedy());
     }
-    say("neither wasm-opt nor npm is here, so wasm-pack will fetch wasm-opt");
+    print_line("neither wasm-opt nor npm is installed, so wasm-pack will fetch wasm-opt");
     Ok(None)
 }
 
-/// On platforms without a download wasm-pack goes on without wasm-opt and only prints a note.
-pub(crate) fn check_fetch(done: Result<()>, wasm_pack_cache: &Path) -> Result<()> {
-    done.map_err(|error| anyhow!("{error:#}\nif it was wasm-opt that could not be fetched: {}", remedy()))?;
+/// On platforms without a download wasm-pack continues without wasm-opt and only prints a note.
+pub(crate) fn check_fetch(result: Result<()>, wasm_pack_cache: &Path) -> Result<()> {
+    result.map_err(|error| anyhow!("{error:#}\nif wasm-opt could not be fetched: {}", remedy()))?;
     let entries = std::fs::read_dir(wasm_pack_cache).context("wasm-pack's cache can't be read")?;
     let fetched = entries.flatten().any(|entry| entry.file_name().to_string_lossy().starts_with("wasm-opt"));
     ensure!(fetched, "wasm-pack has no wasm-opt for this platform; {}", remedy());
@@ -48,17 +48,15 @@ pub(crate) fn check_fetch(done: Result<()>, wasm_pack_cache: &Path) -> Result<()
 }
 
 fn remedy() -> String {
-    format!(
-        "install Node.js with npm, or binaryen {MIN_VERSION} or later; or do without wasm-opt by --no-opt"
-    )
+    format!("install Node.js with npm, or binaryen {MIN_VERSION} or later, or use --no-opt")
 }
 
-async fn fits(program: &Path) -> bool {
-    version_answer(program).await.is_some_and(|answer| version(&answer) >= Some(MIN_VERSION))
+async fn is_recent(program: &Path) -> bool {
+    version_output(program).await.is_some_and(|output| version(&output) >= Some(MIN_VERSION))
 }
 
-fn version(answer: &str) -> Option<u32> {
-    answer.split_whitespace().nth(2)?.parse().ok()
+fn version(output: &str) -> Option<u32> {
+    output.split_whitespace().nth(2)?.parse().ok()
 }
 
 #[cfg(test)]
@@ -66,14 +64,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_old_wasm_opt_is_told_from_a_recent_one() {
-        for (answer, expected) in [
+    fn the_version_is_read_from_the_output_of_wasm_opt() {
+        for (output, expected) in [
             ("wasm-opt version 132 (version_132)\n", Some(132)),
             ("wasm-opt version 108\n", Some(108)),
             ("wasm-opt", None),
             ("something else entirely", None),
         ] {
-            assert_eq!(version(answer), expected, "{answer}");
+            assert_eq!(version(output), expected, "{output}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Finds words in texts for users that have a better replacement: `words.txt` lists both.
 //!
-//! Texts are Markdown files, the page's HTML and scripts, presets, string literals of the shipped crates, and the
+//! Checked texts are Markdown files, the page's HTML and scripts, presets, string literals of the shipped crates, and the
 //! command's doc comments, which are its help.
 
 use std::path::Path;
@@ -32,7 +32,7 @@ pub(crate) fn check() -> Result<()> {
     let files = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md"].map(|file| root().join(file));
     for file in files.into_iter().chain(all_files()?) {
         let name = file.strip_prefix(root()).unwrap_or(&file).to_string_lossy().into_owned();
-        let text = || std::fs::read_to_string(&file).with_context(|| format!("{name} cannot be read"));
+        let text = || std::fs::read_to_string(&file).with_context(|| format!("{name} can't be read"));
         for (line, text) in parts(&name, text)? {
             for (line, rule) in matches(&rules, line, &text) {
                 found.push(format!("{name}:{line}: \"{}\": write \"{}\"", rule.word, rule.replacement));
@@ -49,7 +49,7 @@ fn all_files() -> Result<Vec<std::path::PathBuf>> {
         let entries = WalkDir::new(root().join(folder)).sort_by_file_name().into_iter();
         let wanted = |path: &Path| !EXCEPT.iter().any(|except| path.starts_with(root().join(except)));
         for entry in entries.filter_entry(|entry| wanted(entry.path())) {
-            let entry = entry.with_context(|| format!("{folder} cannot be read"))?;
+            let entry = entry.with_context(|| format!("{folder} can't be read"))?;
             if entry.file_type().is_file() {
                 files.push(entry.into_path());
             }
@@ -89,7 +89,7 @@ fn parts(name: &str, text: impl FnOnce() -> Result<String>) -> Result<Vec<Part>>
             )])
         }
         Some("rs") if !is_test => {
-            let Ok(tokens) = TokenStream::from_str(&text()?) else { bail!("{name} is no Rust source") };
+            let Ok(tokens) = TokenStream::from_str(&text()?) else { bail!("{name} is not Rust source") };
             let mut found = Vec::new();
             literals(tokens, name.starts_with("cli/"), &mut found);
             Ok(found)

@@ -1,6 +1,6 @@
-//! `cargo xtask attend` ends what it started with whoever holds its input.
+//! `cargo xtask attend` ends its program when its input closes.
 #![cfg(unix)]
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::{
     io::{BufRead, BufReader},
@@ -15,7 +15,7 @@ fn attend(script: &str) -> Child {
 }
 
 #[test]
-fn the_end_of_input_ends_the_program_what_it_started_and_its_folder() {
+fn the_end_of_input_ends_the_program_with_its_children_and_its_folder() {
     let mut attended = attend("echo \"$TMPDIR\"; touch \"$TMPDIR/left\"; (sleep 60; echo alive) & wait");
     let mut lines = BufReader::new(attended.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
     let folder = PathBuf::from(lines.next().expect("the folder's name"));
@@ -28,11 +28,11 @@ fn the_end_of_input_ends_the_program_what_it_started_and_its_folder() {
 }
 
 #[test]
-fn a_program_that_ends_by_itself_is_not_waited_for_and_its_failure_is_told() {
-    for (script, well) in [("exit 0", true), ("exit 3", false)] {
+fn the_result_of_a_program_that_ends_by_itself_is_reported() {
+    for (script, succeeds) in [("exit 0", true), ("exit 3", false)] {
         let mut attended = attend(script);
         // Dropping it would end the program.
         let _input = attended.stdin.take();
-        assert_eq!(attended.wait().expect("it ends").success(), well, "{script}");
+        assert_eq!(attended.wait().expect("it ends").success(), succeeds, "{script}");
     }
 }

@@ -21,7 +21,6 @@ pub struct Clock {
 
 impl Clock {
     /// A timer of 1 to 32 bits that starts near 0.
-    #[must_use]
     pub const fn new(bits: u32) -> Self {
         let mask = if bits >= u32::BITS { u32::MAX } else { (1 << bits) - 1 };
         Self { mask, tick: 0 }
@@ -35,7 +34,6 @@ impl Clock {
     }
 
     /// Time to sleep until `wake`, at most half a turn of the counter.
-    #[must_use]
     pub fn sleep_time(&self, wake: Option<Instant>) -> Cycles {
         let max = u64::from(self.mask / 2);
         Cycles(wake.map_or(max, |wake| wake.0.saturating_sub(self.tick).min(max)))

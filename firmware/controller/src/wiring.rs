@@ -26,20 +26,17 @@ pub struct Contact {
 
 impl Contact {
     /// Closed (pin low) while the signal is 1.
-    #[must_use]
     pub const fn closes(signal: Signal, bit: u8) -> Self {
         Self { signal, bit, active: false }
     }
 
     /// Open (pin high) while the signal is 1.
-    #[must_use]
     pub const fn opens(signal: Signal, bit: u8) -> Self {
         Self { signal, bit, active: true }
     }
 }
 
 /// Levels of the signals with a contact.
-#[must_use]
 pub fn levels(contacts: &[Contact], port: u32) -> RawLevels {
     contacts.iter().fold(RawLevels::default(), |levels, contact| {
         let pin = port.checked_shr(contact.bit.into()).unwrap_or(0) & 1 != 0;
@@ -55,7 +52,6 @@ pub const DIR: u32 = 1 << 1;
 pub const NOT_EN: u32 = 1 << 2;
 
 /// Value of the output port.
-#[must_use]
 pub const fn port(levels: Levels) -> u32 {
     let step = if levels.step() & 1 != 0 { STEP } else { 0 };
     let dir = if levels.dir() & 1 != 0 { DIR } else { 0 };

@@ -1,8 +1,7 @@
-//! The kernels in a browser. Their page requests the number of rounds itself, so only the local server is between it
-//! and this process.
+//! Runs the kernels in a browser. Their page posts its reports to a local server, which replies with the next number of
+//! rounds.
 
 use std::ffi::OsString;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -19,19 +18,19 @@ use tower_http::services::ServeDir;
 use super::table::Report;
 use crate::browser::Browser;
 use crate::run::{self, Group};
-use crate::{root, serve};
+use crate::{files, root, serve};
 
 /// Maximum time between two messages of the page: the browser starts, or it measures the rounds of a block.
-const PATIENCE: Duration = Duration::from_secs(120);
+const TIMEOUT: Duration = Duration::from_secs(120);
 
-enum Word {
+enum Message {
     /// The report of the last rounds, empty at first; the page then waits for the next number of rounds.
     Report(String),
     Failed(String),
 }
 
 pub(super) struct Page {
-    words: mpsc::Receiver<Word>,
+    messages: mpsc::Receiver<Message>,
     rounds: mpsc::Sender<u32>,
     server: JoinHandle<()>,
     _browser: Group,
@@ -44,21 +43,21 @@ impl Page {
         let address = format!("http://{}/", listener.local_addr()?);
         listener.set_nonblocking(true)?;
         let listener = tokio::net::TcpListener::from_std(listener)?;
-        let (said, mut words) = mpsc::channel(1);
-        let (rounds, asked) = mpsc::channel(1);
-        let router = router(page, package, said, asked);
+        let (sender, mut messages) = mpsc::channel(1);
+        let (rounds, requested) = mpsc::channel(1);
+        let router = router(page, package, sender, requested);
         let server = tokio::spawn(async move {
             let _ = axum::serve(listener, router).await;
         });
         let log = home.join("browser.log");
         let browser = run::start(command(browser, &address, home, &log)?)?;
-        hear(&mut words, &log).await?;
-        Ok(Self { words, rounds, server, _browser: browser, log })
+        receive(&mut messages, &log).await?;
+        Ok(Self { messages, rounds, server, _browser: browser, log })
     }
 
     pub(super) async fn rounds(&mut self, rounds: u32) -> Result<Vec<Report>> {
         self.rounds.send(rounds).await.context("the server stopped")?;
-        let text = hear(&mut self.words, &self.log).await?;
+        let text = receive(&mut self.messages, &self.log).await?;
         Report::all_from_json(&text)
     }
 }
@@ -69,28 +68,34 @@ impl Drop for Page {
     }
 }
 
-async fn hear(words: &mut mpsc::Receiver<Word>, log: &Path) -> Result<String> {
-    match tokio::time::timeout(PATIENCE, words.recv()).await {
-        Ok(Some(Word::Report(text))) => Ok(text),
-        Ok(Some(Word::Failed(why))) => bail!("the page of the kernels failed: {why}"),
+/// The next report of the page.
+async fn receive(messages: &mut mpsc::Receiver<Message>, log: &Path) -> Result<String> {
+    match tokio::time::timeout(TIMEOUT, messages.recv()).await {
+        Ok(Some(Message::Report(text))) => Ok(text),
+        Ok(Some(Message::Failed(why))) => bail!("the page of the kernels failed: {why}"),
         Ok(None) => bail!("the server of the kernels' page stopped"),
         Err(_) => bail!(
-            "the page of the kernels was silent for {} s; what the browser printed is in {}",
-            PATIENCE.as_secs(),
+            "no message from the page of the kernels within {} s; the output of the browser is in {}",
+            TIMEOUT.as_secs(),
             log.display()
         ),
     }
 }
 
-fn router(page: &Path, package: &Path, words: mpsc::Sender<Word>, rounds: mpsc::Receiver<u32>) -> Router {
-    let failed = words.clone();
+fn router(
+    page: &Path,
+    package: &Path,
+    messages: mpsc::Sender<Message>,
+    rounds: mpsc::Receiver<u32>,
+) -> Router {
+    let failures = messages.clone();
     let rounds = Arc::new(Mutex::new(rounds));
     let report = move |text: String| async move {
-        let _ = words.send(Word::Report(text)).await;
+        let _ = messages.send(Message::Report(text)).await;
         rounds.lock().await.recv().await.unwrap_or(0).to_string()
     };
     let fail = move |why: String| async move {
-        let _ = failed.send(Word::Failed(why)).await;
+        let _ = failures.send(Message::Failed(why)).await;
     };
     Router::new()
         .route("/rounds", post(report))
@@ -111,11 +116,10 @@ fn command(browser: &Browser, address: &str, home: &Path, log: &Path) -> Result<
         args: Vec<String>,
     }
     let flags = root().join("wasm").join("webdriver.json");
-    let text =
-        std::fs::read_to_string(&flags).with_context(|| format!("{} can't be read", flags.display()))?;
-    let flags: WebDriver = serde_json::from_str(&text)
-        .with_context(|| format!("{} is not what it should be", flags.display()))?;
-    let file = File::create(log).with_context(|| format!("{} can't be written", log.display()))?;
+    let text = files::read(&flags)?;
+    let flags: WebDriver =
+        serde_json::from_str(&text).with_context(|| format!("{} is invalid", flags.display()))?;
+    let file = files::create(log)?;
     let mut profile = OsString::from("--user-data-dir=");
     profile.push(home.join("profile"));
     let mut command = Command::new(&browser.chromium);

@@ -7,7 +7,7 @@ use serde_json::Value;
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub(super) struct Report {
     name: String,
-    /// Empty in a commit whose kernels have no description.
+    /// Description; empty in a commit whose kernels have no description.
     #[serde(default)]
     what: String,
     unit: String,
@@ -21,7 +21,7 @@ pub(super) struct Report {
 
 impl Report {
     pub(super) fn all_from_json(text: &str) -> Result<Vec<Self>> {
-        serde_json::from_str(text).with_context(|| format!("this is no report of the kernels: {text:?}"))
+        serde_json::from_str(text).with_context(|| format!("not a report of the kernels: {text:?}"))
     }
 
     /// Units per second of the best call; other programs on the machine only add time.
@@ -74,7 +74,8 @@ impl Ratio {
         format!("{:.digits$} ± {:.digits$}", self.median, self.deviation)
     }
 
-    fn judge(self, aim: Option<f64>) -> String {
+    /// The aim, and whether this ratio meets it.
+    fn compare_with(self, aim: Option<f64>) -> String {
         let met = |aim: f64| if self.median >= aim { "met" } else { "missed" };
         aim.map_or_else(String::new, |aim| format!("at least {aim:.2}: {}", met(aim)))
     }
@@ -112,9 +113,9 @@ pub(super) fn against(now: &[Block], before: &[Block]) -> Result<String> {
     let first = now.first().context("nothing was measured")?;
     let mut rows = vec![["kernel", "native", "", "browser", ""].map(str::to_owned)];
     for kernel in &first.native {
-        let [native, browser] = both(now, before, &kernel.name);
+        let [native, browser] = ratios_to_before(now, before, &kernel.name);
         let cells = |ratio: Option<Ratio>| match ratio {
-            Some(ratio) => [ratio.print(), ratio.judge(Some(MIN_OF_BEFORE))],
+            Some(ratio) => [ratio.print(), ratio.compare_with(Some(MIN_OF_BEFORE))],
             None => ["–".to_owned(), String::new()],
         };
         let ([native, native_aim], [browser, browser_aim]) = (cells(native), cells(browser));
@@ -123,9 +124,9 @@ pub(super) fn against(now: &[Block], before: &[Block]) -> Result<String> {
     Ok(align(&rows))
 }
 
-/// `None` if the kernel was not measured before.
-fn both(now: &[Block], before: &[Block], kernel: &str) -> [Option<Ratio>; 2] {
-    let of = |side: fn(&Block) -> &[Report]| -> Option<Ratio> {
+/// Ratios of the speeds now and before, native and in the browser; `None` if the kernel was not measured in both.
+fn ratios_to_before(now: &[Block], before: &[Block], kernel: &str) -> [Option<Ratio>; 2] {
+    let ratio_of = |side: fn(&Block) -> &[Report]| -> Option<Ratio> {
         let pairs = now.iter().zip(before);
         let ratios = pairs.map(|(now, before)| {
             let speed = |block| find(side(block), kernel).map(Report::best).ok();
@@ -133,7 +134,7 @@ fn both(now: &[Block], before: &[Block], kernel: &str) -> [Option<Ratio>; 2] {
         });
         Some(Ratio::of(&ratios.collect::<Option<Vec<f64>>>()?))
     };
-    [of(|block| &block.native), of(|block| &block.browser)]
+    [ratio_of(|block| &block.native), ratio_of(|block| &block.browser)]
 }
 
 #[derive(Deserialize, Serialize)]
@@ -154,7 +155,7 @@ pub(super) fn markdown(results: &str) -> Result<String> {
     struct Results {
         kernels: Vec<Kernel>,
     }
-    let Results { kernels } = serde_json::from_str(results).context("these are no results of a bench")?;
+    let Results { kernels } = serde_json::from_str(results).context("not the results of a bench")?;
     let mut lines = vec![
         "| kernel | what it does | speed, native | in the browser, of native |".to_owned(),
         "| --- | --- | --- | --- |".to_owned(),
@@ -188,7 +189,7 @@ pub(super) fn json(blocks: &[Block], before: Option<&[Block]>, page: Option<Valu
             ratio(blocks, |block| Ok((find(&block.native, name)?, find(&block.native, yardstick)?)))
         });
         let [native_of_before, browser_of_before] =
-            before.map_or([None; 2], |before| both(blocks, before, name));
+            before.map_or([None; 2], |before| ratios_to_before(blocks, before, name));
         Ok(Kernel {
             name: name.clone(),
             what: what.clone(),
@@ -222,7 +223,7 @@ fn native_row(kernel: &Report, blocks: &[Block], estimate: &Estimate) -> Result<
         si(kernel.units as f64 * calls, &format!("{}/s", kernel.unit)),
         kernel.edges.map_or_else(String::new, |edges| si(edges as f64 * calls, "edges/s")),
         ratio.map_or_else(String::new, |(ratio, yardstick)| format!("{} of {yardstick}", ratio.print())),
-        ratio.map_or_else(String::new, |(ratio, _)| ratio.judge(kernel.aim)),
+        ratio.map_or_else(String::new, |(ratio, _)| ratio.compare_with(kernel.aim)),
     ])
 }
 
@@ -239,7 +240,7 @@ fn browser_row(kernel: &Report, blocks: &[Block]) -> Result<[String; 5]> {
         best(|block| &block.native)?,
         best(|block| &block.browser)?,
         format!("{} of native", ratio.print()),
-        ratio.judge(kernel.browser_aim),
+        ratio.compare_with(kernel.browser_aim),
     ])
 }
 
@@ -248,7 +249,7 @@ fn ratio<'b>(
     pair: impl Fn(&'b Block) -> Result<(&'b Report, &'b Report)>,
 ) -> Result<Ratio> {
     let ratios =
-        blocks.iter().map(|block| pair(block).map(|(subject, yardstick)| subject.best() / yardstick.best()));
+        blocks.iter().map(|block| pair(block).map(|(kernel, yardstick)| kernel.best() / yardstick.best()));
     Ok(Ratio::of(&ratios.collect::<Result<Vec<f64>>>()?))
 }
 
@@ -268,6 +269,7 @@ fn align<const N: usize>(rows: &[[String; N]]) -> String {
     rows.iter().map(line).collect()
 }
 
+/// Three digits and a prefix of the SI.
 fn si(value: f64, unit: &str) -> String {
     let prefixes = [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
     let (scale, prefix) = prefixes.into_iter().find(|(scale, _)| value >= *scale).unwrap_or((1e-9, "n"));
@@ -301,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ratio_is_of_the_best_calls_of_each_block_and_the_median_of_the_blocks() {
+    fn a_ratio_is_the_median_of_the_ratios_of_the_best_calls_per_block() {
         // In each block the yardstick's best call takes 1 ms; a disturbed call changes nothing.
         let blocks: Vec<Block> = [[0.004, 0.9], [0.9, 0.005], [0.002, 0.004]]
             .iter()
@@ -327,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_become_of_a_kernel_is_a_ratio_of_blocks_that_stand_beside_each_other() {
+    fn a_comparison_with_a_commit_uses_alternating_blocks() {
         let block = |names: &[&str], seconds: f64| {
             let all: Vec<Report> = names.iter().map(|name| report(name, None, &[seconds])).collect();
             Block { native: all.clone(), browser: all }
@@ -338,7 +340,7 @@ mod tests {
         let before = [block(&["trace"], 0.001), block(&["trace"], 0.004)];
         let table = against(&now, &before).unwrap();
         let cells: Vec<Vec<&str>> = table.lines().map(|line| line.split_whitespace().collect()).collect();
-        assert_eq!(cells[1][..4], ["trace", "0.750", "±", "0.250"], "halved, and as before");
+        assert_eq!(cells[1][..4], ["trace", "0.750", "±", "0.250"], "the median of 0.5 and 1");
         assert_eq!(cells[2], ["added", "–", "–"]);
         let page = serde_json::json!({ "frames": [1] });
         let json: Value = serde_json::from_str(&json(&now, Some(&before), Some(page)).unwrap()).unwrap();
@@ -349,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_in_markdown_has_both_sides_of_every_comparison() {
+    fn the_markdown_table_has_all_kernels_of_comparisons() {
         let native = vec![
             report("copy", None, &[0.001]),
             report("trace", Some("copy"), &[0.004]),
@@ -387,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn criterions_estimates_are_read_in_seconds() {
+    fn estimates_of_criterion_are_converted_to_seconds() {
         let text = r#"{"mean":{"point_estimate":9.0},"median":{"point_estimate":2000.0,"standard_error":1.0},"median_abs_dev":{"point_estimate":30.0}}"#;
         let Estimate { median_s, deviation_s } = Estimate::from_json(text).unwrap();
         assert!((median_s - 2e-6).abs() < 1e-18 && (deviation_s - 3e-8).abs() < 1e-18);

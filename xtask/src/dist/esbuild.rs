@@ -1,8 +1,8 @@
 //! Runs esbuild, which minifies modules and style sheets and puts a hash of the file and its imports into each name.
 //!
-//! esbuild puts code that several entries share into one file per set of entries: twenty small files that weigh more
-//! than one. So it gets a copy of the sources in which each later part imports the page's script. Shared code then
-//! stays in that script and loads with it.
+//! esbuild puts code that several entries share into one file per set of entries: twenty small files, larger in sum than
+//! one. So it gets a copy of the sources in which each later part imports the page's script. Shared code then stays in
+//! that script and loads with it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -13,30 +13,31 @@ use tokio::process::Command;
 use walkdir::WalkDir;
 
 use super::ASSETS;
-use crate::npm::Npm;
-use crate::run;
+use crate::npm::NpmPackage;
+use crate::{files, run};
 
-const ESBUILD: Npm = Npm { package: "esbuild", version: "0.28.2" };
+const ESBUILD: NpmPackage = NpmPackage { package: "esbuild", version: "0.28.2" };
 
-struct Work {
+/// A copy of the sources in a temporary folder.
+struct SourceCopy {
     folder: PathBuf,
 }
 
-impl Work {
+impl SourceCopy {
     fn new(web: &Path) -> Result<Self> {
         let folder = std::env::temp_dir().join(format!("stepscope-web-{}", std::process::id()));
-        let work = Self { folder };
+        let copy = Self { folder };
         for entry in WalkDir::new(web) {
             let entry = entry.with_context(|| format!("{} can't be read", web.display()))?;
-            let place = work.web().join(entry.path().strip_prefix(web)?);
+            let target = copy.web().join(entry.path().strip_prefix(web)?);
             let done = if entry.file_type().is_dir() {
-                std::fs::create_dir_all(&place)
+                std::fs::create_dir_all(&target)
             } else {
-                std::fs::copy(entry.path(), &place).map(drop)
+                std::fs::copy(entry.path(), &target).map(drop)
             };
-            done.with_context(|| format!("{} can't be made", place.display()))?;
+            done.with_context(|| format!("{} can't be created", target.display()))?;
         }
-        Ok(work)
+        Ok(copy)
     }
 
     fn web(&self) -> PathBuf {
@@ -44,39 +45,44 @@ impl Work {
     }
 }
 
-impl Drop for Work {
+impl Drop for SourceCopy {
     fn drop(&mut self) {
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }
 
+/// Bundles `sources` into the folder `out`; returns the metafile of esbuild.
 async fn esbuild(web: &Path, sources: &BTreeSet<&str>, out: &Path) -> Result<String> {
-    let note = out.with_extension("json");
+    let metafile = out.with_extension("json");
     let path = |option: &str, path: &Path| format!("--{option}={}", path.display());
     let mut command = Command::new(ESBUILD.program("esbuild").await?);
     command.current_dir(web).args(sources).args(["--bundle", "--splitting", "--format=esm", "--minify"]);
     command.args(["--charset=utf8", "--legal-comments=none", "--log-level=warning"]);
     command.args(["--entry-names=[name].[hash]", "--chunk-names=[name].[hash]"]);
     command.args(["wasm", "png", "svg"].map(|ending| format!("--loader:.{ending}=copy")));
-    command.arg(path("outdir", out)).arg(path("metafile", &note));
+    command.arg(path("outdir", out)).arg(path("metafile", &metafile));
     run::to_end(command).await?;
-    let text = std::fs::read_to_string(&note).context("esbuild does not say what it made")?;
-    std::fs::remove_file(&note).with_context(|| format!("{} can't be removed", note.display()))?;
+    let text = files::read(&metafile)?;
+    files::remove(&metafile)?;
     Ok(text)
 }
 
 /// The sources that only the page's `script` loads, and only later. A part that another page or a worker also needs
 /// must not import that script.
-pub(super) fn later_parts(note: &str, sources: &BTreeSet<&str>, script: &str) -> Result<BTreeSet<String>> {
+pub(super) fn later_parts(
+    metafile: &str,
+    sources: &BTreeSet<&str>,
+    script: &str,
+) -> Result<BTreeSet<String>> {
     #[derive(Deserialize)]
-    struct Note {
+    struct Metafile {
         inputs: BTreeMap<String, Input>,
     }
-    let Note { inputs } = serde_json::from_str(note).context("esbuild's note of what it read")?;
+    let Metafile { inputs } = serde_json::from_str(metafile).context("inputs in esbuild's metafile")?;
     let imports = |source: &str| inputs.get(source).map_or(&[][..], |input| &input.imports);
     let elsewhere = reached(&inputs, sources.iter().copied().filter(|source| *source != script).collect());
     let later =
-        reached(&inputs, vec![script]).into_iter().flat_map(imports).filter(|import| import.is_later());
+        reached(&inputs, vec![script]).into_iter().flat_map(imports).filter(|import| import.is_dynamic());
     let parts = later.map(|import| &import.path).filter(|path| !elsewhere.contains(path.as_str()));
     Ok(parts.cloned().collect())
 }
@@ -86,18 +92,20 @@ struct Input {
     imports: Vec<Import>,
 }
 
-fn reached<'a>(inputs: &'a BTreeMap<String, Input>, mut waiting: Vec<&'a str>) -> BTreeSet<&'a str> {
+/// The sources, and all that they import.
+fn reached<'a>(inputs: &'a BTreeMap<String, Input>, mut queue: Vec<&'a str>) -> BTreeSet<&'a str> {
     let mut found = BTreeSet::new();
-    while let Some(source) = waiting.pop() {
+    while let Some(source) = queue.pop() {
         if let Some(input) = inputs.get(source)
             && found.insert(source)
         {
-            waiting.extend(input.imports.iter().map(|import| import.path.as_str()));
+            queue.extend(input.imports.iter().map(|import| import.path.as_str()));
         }
     }
     found
 }
 
+/// The files that esbuild made, by path.
 #[derive(Debug)]
 pub(super) struct Bundles(BTreeMap<String, Output>);
 
@@ -116,7 +124,7 @@ struct Import {
 }
 
 impl Import {
-    fn is_later(&self) -> bool {
+    fn is_dynamic(&self) -> bool {
         self.kind == "dynamic-import"
     }
 }
@@ -129,31 +137,29 @@ impl Bundles {
         script: &str,
         dist: &Path,
     ) -> Result<Self> {
-        let work = Work::new(web)?;
-        let draft = esbuild(&work.web(), sources, &work.folder.join("draft")).await?;
+        let copy = SourceCopy::new(web)?;
+        let draft = esbuild(&copy.web(), sources, &copy.folder.join("draft")).await?;
         for part in later_parts(&draft, sources, script)? {
-            let file = work.web().join(&part);
+            let file = copy.web().join(&part);
             let up = "../".repeat(part.matches('/').count());
-            let text = std::fs::read_to_string(&file)
-                .with_context(|| format!("{} can't be read", file.display()))?;
-            std::fs::write(&file, format!("{text}import \"./{up}{script}\";\n"))
-                .with_context(|| format!("{} can't be written", file.display()))?;
+            let text = files::read(&file)?;
+            files::write(&file, format!("{text}import \"./{up}{script}\";\n"))?;
         }
-        Self::parse(&esbuild(&work.web(), sources, &dist.join(ASSETS)).await?)
+        Self::parse(&esbuild(&copy.web(), sources, &dist.join(ASSETS)).await?)
     }
 
-    pub(super) fn parse(note: &str) -> Result<Self> {
+    pub(super) fn parse(metafile: &str) -> Result<Self> {
         #[derive(Deserialize)]
-        struct Note {
+        struct Metafile {
             outputs: BTreeMap<String, Output>,
         }
-        let placed = |path: &str| format!("{ASSETS}/{}", path.rsplit('/').next().unwrap_or(path));
-        let Note { outputs } = serde_json::from_str(note).context("esbuild's note of what it made")?;
+        let in_assets = |path: &str| format!("{ASSETS}/{}", path.rsplit('/').next().unwrap_or(path));
+        let Metafile { outputs } = serde_json::from_str(metafile).context("outputs in esbuild's metafile")?;
         let outputs = outputs.into_iter().map(|(path, mut output)| {
             for import in &mut output.imports {
-                import.path = placed(&import.path);
+                import.path = in_assets(&import.path);
             }
-            (placed(&path), output)
+            (in_assets(&path), output)
         });
         Ok(Self(outputs.collect()))
     }
@@ -162,31 +168,33 @@ impl Bundles {
         self.0.keys().map(String::as_str)
     }
 
-    pub(super) fn of(&self, source: &str) -> Option<&str> {
+    /// The file made from an entry.
+    pub(super) fn file_of(&self, source: &str) -> Option<&str> {
         let found = self.0.iter().find(|(_, output)| output.entry.as_deref() == Some(source));
         found.map(|(path, _)| path.as_str())
     }
 
-    /// Everything that loads before this file runs, including the file.
-    pub(super) fn at_once(&self, file: &str) -> BTreeSet<&str> {
+    /// All files that load before this file runs, including it.
+    pub(super) fn with_imports(&self, file: &str) -> BTreeSet<&str> {
         let mut loaded = BTreeSet::new();
-        let mut waiting = vec![file];
-        while let Some(path) = waiting.pop() {
+        let mut queue = vec![file];
+        while let Some(path) = queue.pop() {
             if let Some((path, output)) = self.0.get_key_value(path)
                 && loaded.insert(path.as_str())
             {
-                let wanted = output.imports.iter().filter(|import| !import.is_later());
-                waiting.extend(wanted.map(|import| import.path.as_str()));
+                let static_imports = output.imports.iter().filter(|import| !import.is_dynamic());
+                queue.extend(static_imports.map(|import| import.path.as_str()));
             }
         }
         loaded
     }
 
-    pub(super) fn later<'a>(&'a self, files: &BTreeSet<&str>) -> BTreeMap<&'a str, &'a str> {
+    /// Dynamic imports of these files: source and file.
+    pub(super) fn dynamic_imports<'a>(&'a self, files: &BTreeSet<&str>) -> BTreeMap<&'a str, &'a str> {
         let imports = files.iter().filter_map(|file| self.0.get(*file)).flat_map(|output| &output.imports);
-        let paths = imports.filter(|import| import.is_later()).map(|import| import.path.as_str());
+        let paths = imports.filter(|import| import.is_dynamic()).map(|import| import.path.as_str());
         paths
-            .map(|path| (self.0.get(path).and_then(|it| it.entry.as_deref()).unwrap_or(path), path))
+            .map(|path| (self.0.get(path).and_then(|output| output.entry.as_deref()).unwrap_or(path), path))
             .collect()
     }
 }

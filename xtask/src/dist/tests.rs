@@ -1,4 +1,4 @@
-//! A small site, as esbuild hands it over.
+//! Builds a small site from output like that of esbuild.
 
 use super::*;
 
@@ -65,11 +65,11 @@ fn bundles(hash: &str) -> Bundles {
 }
 
 fn built(changed: &[(&str, &str)], hash: &str) -> Result<BTreeMap<String, String>> {
-    site(changed).built(&bundles(hash), "1.2.3", Some("abc"))
+    site(changed).texts_of_build(&bundles(hash), "1.2.3", Some("abc"))
 }
 
 #[test]
-fn all_that_pages_and_the_manifest_name_becomes_a_file_with_a_hash() {
+fn sources_are_all_files_that_pages_and_the_manifest_reference() {
     let sources: Vec<_> = site(&[]).sources().into_iter().map(str::to_owned).collect();
     assert_eq!(
         sources,
@@ -101,8 +101,8 @@ fn pages_and_manifest_have_the_new_names_and_the_service_worker_lists_all_files(
     assert!(built["a.webmanifest"].contains("\"src\": \"assets/i.I.svg\""), "{}", built["a.webmanifest"]);
 
     let worker = &built["sw.js"];
-    let kept = ["a.webmanifest", "help.html", "licenses.html", "./"];
-    for name in bundles("M").files().chain(kept) {
+    let unhashed = ["a.webmanifest", "help.html", "licenses.html", "./"];
+    for name in bundles("M").files().chain(unhashed) {
         assert!(worker.contains(&format!("\"{name}\"")), "{name} in {worker}");
     }
     assert!(worker.ends_with("};\nself.x = build;\n"), "{worker}");
@@ -112,28 +112,28 @@ fn pages_and_manifest_have_the_new_names_and_the_service_worker_lists_all_files(
 }
 
 #[test]
-fn another_name_of_a_file_gives_the_build_another_number() {
-    let number = |hash: &str| built(&[], hash).unwrap()["sw.js"].split('"').nth(1).unwrap().to_owned();
-    assert_eq!(number("M"), number("M"));
-    assert_ne!(number("M"), number("N"));
+fn the_build_id_depends_on_the_names_of_the_files() {
+    let build_id = |hash: &str| built(&[], hash).unwrap()["sw.js"].split('"').nth(1).unwrap().to_owned();
+    assert_eq!(build_id("M"), build_id("M"));
+    assert_ne!(build_id("M"), build_id("N"));
 }
 
 #[test]
-fn what_has_a_hash_is_kept_for_ever_and_all_else_asked_for_anew() {
+fn files_with_a_hash_are_cached_forever_and_all_others_requested_again() {
     let one = built(&[], "M").unwrap();
     let headers = headers::Headers::parse(&one[headers::FILE]).unwrap();
     let names = one.keys().filter(|name| *name != headers::FILE).map(String::as_str);
     for name in names.chain(bundles("M").files()).chain(["", "docs/index.html"]) {
         let given: Vec<_> =
             headers.of(&format!("/{name}")).map(|(_, value)| value.to_str().unwrap()).collect();
-        let kept =
+        let expected =
             if name.starts_with("assets/") { "public, max-age=31536000, immutable" } else { "no-cache" };
-        assert_eq!(given, ["1", kept], "{name}");
+        assert_eq!(given, ["1", expected], "{name}");
     }
 }
 
 #[test]
-fn what_loads_later_is_told_from_what_opening_the_page_loads() {
+fn files_that_load_later_are_listed_apart_from_the_opening() {
     let Parts { opening, later } = site(&[]).parts(&bundles("M"));
     let assets = ["a.A.css", "chunk.G.js", "chunk.T.js", "main.M.js", "w.W.js", "x.X.wasm"];
     let assets = assets.map(|name| format!("assets/{name}"));
@@ -152,12 +152,12 @@ fn what_loads_later_is_told_from_what_opening_the_page_loads() {
 }
 
 #[test]
-fn a_site_that_does_not_hold_together_is_refused() {
+fn missing_files_and_placeholders_are_reported() {
     for (changed, expected) in [
-        (("help.html", "<a href=\"none.html\">"), "help.html names none.html, which is not there"),
-        (("help.html", "<script src=\"none.js\">"), "help.html names none.js, which is not made"),
-        (("index.html", "<html>"), "index.html must hold once: data-build=\"development\""),
-        (("sw.js", "self"), "sw.js must hold once: const build"),
+        (("help.html", "<a href=\"none.html\">"), "help.html references none.html, which does not exist"),
+        (("help.html", "<script src=\"none.js\">"), "help.html references none.js, which is not built"),
+        (("index.html", "<html>"), "index.html must contain once: data-build=\"development\""),
+        (("sw.js", "self"), "sw.js must contain once: const build"),
     ] {
         let error = format!("{:#}", built(&[changed], "M").unwrap_err());
         assert!(error.contains(expected), "{error}");
@@ -165,7 +165,7 @@ fn a_site_that_does_not_hold_together_is_refused() {
 }
 
 #[test]
-fn only_an_earlier_build_is_cleared_away() {
+fn only_an_earlier_build_is_removed() {
     let dist = std::env::temp_dir().join(format!("stepscope-dist-{}", std::process::id()));
     std::fs::create_dir_all(dist.join(ASSETS)).unwrap();
     clear(&dist).unwrap();
@@ -176,32 +176,32 @@ fn only_an_earlier_build_is_cleared_away() {
         clear(&dist)
             .unwrap_err()
             .to_string()
-            .ends_with("is no earlier build; remove it or take another folder")
+            .ends_with("is not an earlier build; remove it, or use another folder")
     );
     std::fs::remove_dir_all(&dist).unwrap();
 }
 
 #[test]
-fn what_a_page_names_for_later_is_made_and_listed_but_not_among_what_opening_it_loads() {
+fn files_for_later_attributes_are_built_but_not_part_of_the_opening() {
     let page = "<html data-build=\"development\"><head>\
                 <script type=\"module\" src=\"main.js\" data-study-worker=\"engine/w.js\" data-tools-core=\"pkg/x.wasm\"></script></head>\
                 <span id=\"version\">development</span>";
     let site = site(&[("index.html", page)]);
-    let made = bundles("M");
-    let built = site.built(&made, "1.2.3", Some("abc")).unwrap();
+    let bundles = bundles("M");
+    let built = site.texts_of_build(&bundles, "1.2.3", Some("abc")).unwrap();
     assert!(
         built["index.html"]
             .contains("data-study-worker=\"assets/w.W.js\" data-tools-core=\"assets/x.X.wasm\"")
     );
-    assert!(built["sw.js"].contains("assets/x.X.wasm"), "it is kept for use without a network");
-    let parts = site.parts(&made);
+    assert!(built["sw.js"].contains("assets/x.X.wasm"), "offline use needs it");
+    let parts = site.parts(&bundles);
     assert!(!parts.opening.contains("assets/x.X.wasm") && !parts.opening.contains("assets/w.W.js"));
     let later: Vec<_> = parts.later["engine/w.js"].iter().map(String::as_str).collect();
     assert_eq!(later, ["assets/w.W.js", "assets/x.X.wasm"]);
 }
 
 #[test]
-fn a_later_part_is_what_the_script_of_the_page_alone_asks_for() {
+fn a_later_part_is_imported_only_by_the_script_of_the_page() {
     let source = |name: &str, now: &[&str], later: &[&str]| {
         let import = |path: &&str, kind: &str| format!("{{\"path\": \"{path}\", \"kind\": \"{kind}\"}}");
         let now = now.iter().map(|path| import(path, "import-statement"));

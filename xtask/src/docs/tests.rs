@@ -55,7 +55,7 @@ fn pages_link_to_each_other_and_to_the_contents() {
 }
 
 #[test]
-fn links_that_lead_nowhere_are_reported() {
+fn broken_links_and_unlisted_pages_are_reported() {
     for (name, file, page, expected) in [
         ("none", "docs/README.md", "[a](none.md)", "docs/README.md links to none.md, which does not exist"),
         (
@@ -74,7 +74,7 @@ fn links_that_lead_nowhere_are_reported() {
 }
 
 #[test]
-fn the_site_is_complete_and_needs_nothing_inline() {
+fn the_site_has_no_inline_scripts_or_styles() {
     let files = Book::read(root()).unwrap().files().unwrap();
     assert!(files.len() > 30, "{:?}", files.keys());
     for (name, bytes) in files.iter().filter(|(name, _)| name.ends_with(".html")) {
@@ -86,7 +86,7 @@ fn the_site_is_complete_and_needs_nothing_inline() {
 
 /// Long pages are references; all others stay short enough to be read.
 #[test]
-fn a_page_that_is_no_reference_has_at_most_8_kb() {
+fn pages_that_are_no_references_have_at_most_8_kb() {
     let book = Book::read(root()).unwrap();
     let references = ["docs/decisions.md", "docs/contract.md"];
     for chapter in book.chapters.iter().filter(|chapter| chapter.part != "Reference") {
@@ -102,7 +102,7 @@ fn a_page_that_is_no_reference_has_at_most_8_kb() {
 }
 
 #[test]
-fn the_readmes_links_lead_to_files() {
+fn links_of_the_readme_exist() {
     let readme = read(root(), Path::new("README.md")).unwrap();
     for event in Parser::new(&readme) {
         if let Event::Start(Tag::Link { dest_url, .. } | Tag::Image { dest_url, .. }) = event

@@ -5,15 +5,18 @@ use std::fmt;
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Report {
     executions: u64,
-    executions_a_second: u64,
+    executions_per_second: u64,
     /// Coverage counters reached and in total. The total includes everything that is linked, so it is never reached.
     covered: u64,
     counters: u64,
-    kept: u64,
+    /// Inputs that reached something new.
+    new_inputs: u64,
     slowest_s: u64,
     memory_mb: u64,
+    /// File of the failing input.
     pub(crate) finding: Option<String>,
-    broken: Vec<String>,
+    /// Its error.
+    error: Vec<String>,
 }
 
 const MAX_LINES: usize = 6;
@@ -30,8 +33,8 @@ impl Report {
             {
                 match name {
                     "number_of_executed_units" => report.executions = number(value),
-                    "average_exec_per_sec" => report.executions_a_second = number(value),
-                    "new_units_added" => report.kept = number(value),
+                    "average_exec_per_sec" => report.executions_per_second = number(value),
+                    "new_units_added" => report.new_inputs = number(value),
                     "slowest_unit_time_sec" => report.slowest_s = number(value),
                     "peak_rss_mb" => report.memory_mb = number(value),
                     _ => {}
@@ -49,19 +52,19 @@ impl Report {
             }
         }
         if report.finding.is_some() {
-            report.broken = broken(log);
+            report.error = error(log);
         }
         report
     }
 }
 
 /// The panic without its consequences, or libFuzzer's own error.
-fn broken(log: &str) -> Vec<String> {
+fn error(log: &str) -> Vec<String> {
     let from = |mark: &str| log.lines().skip_while(|line| !line.contains(mark)).collect::<Vec<_>>();
     let panic = from("panicked at ");
-    let told = if panic.is_empty() { from("ERROR: libFuzzer: ") } else { panic };
-    let end = |line: &&str| line.starts_with("stack backtrace") || line.starts_with("note: ");
-    let shown = told.into_iter().take_while(|line| !end(line)).take(MAX_LINES);
+    let error = if panic.is_empty() { from("ERROR: libFuzzer: ") } else { panic };
+    let is_end = |line: &&str| line.starts_with("stack backtrace") || line.starts_with("note: ");
+    let shown = error.into_iter().take_while(|line| !is_end(line)).take(MAX_LINES);
     shown.map(|line| line.chars().take(MAX_CHARACTERS).collect()).collect()
 }
 
@@ -71,17 +74,17 @@ impl fmt::Display for Report {
             f,
             "{} executions ({}/s), {} of {} edges covered, {} inputs that reached something new; slowest input {}, {} MB",
             self.executions,
-            self.executions_a_second,
+            self.executions_per_second,
             self.covered,
             self.counters,
-            self.kept,
+            self.new_inputs,
             if self.slowest_s == 0 { "under 1 s".to_owned() } else { format!("{} s", self.slowest_s) },
             self.memory_mb
         )?;
         if self.finding.is_some() {
             f.write_str("\nFOUND")?;
         }
-        self.broken.iter().try_for_each(|line| write!(f, "\n  {line}"))
+        self.error.iter().try_for_each(|line| write!(f, "\n  {line}"))
     }
 }
 
@@ -90,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_quiet_run_is_told_by_its_numbers() {
+    fn a_run_without_findings_is_reported_with_its_numbers() {
         let log = "INFO: Loaded 1 modules   (3717 inline 8-bit counters): 3717 [0x1, 0x2), \n\
                    #12\tINITED cov: 700 ft: 1204 corp: 11/3213b exec/s: 0 rss: 28Mb\n\
                    #188337\tDONE   cov: 935 ft: 3243 corp: 468/50Kb lim: 544 exec/s: 3087 rss: 29Mb\n\
@@ -110,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_finding_is_told_by_its_panic_and_its_file() {
+    fn a_finding_is_reported_with_its_panic_and_file() {
         let log = "#5\tNEW    cov: 7 ft: 8\n\n\
                    thread '<unnamed>' (2453) panicked at tests/src/fuzzing/link.rs:61:21:\n\
                    assertion `left == right` failed\n\
@@ -120,13 +123,13 @@ mod tests {
         let report = Report::of(log);
         assert_eq!(report.finding.as_deref(), Some("findings/crash-5f"));
         let text = report.to_string();
-        let told = "\nFOUND\n  thread '<unnamed>' (2453) panicked at tests/src/fuzzing/link.rs:61:21:\n  \
+        let expected = "\nFOUND\n  thread '<unnamed>' (2453) panicked at tests/src/fuzzing/link.rs:61:21:\n  \
                     assertion `left == right` failed";
-        assert!(text.ends_with(told), "{text}");
+        assert!(text.ends_with(expected), "{text}");
     }
 
     #[test]
-    fn what_does_not_panic_is_told_in_libfuzzers_words() {
+    fn without_a_panic_the_error_of_libfuzzer_is_reported() {
         let log = "==7== ERROR: libFuzzer: timeout after 10 seconds\n\
                    artifact_prefix='findings/'; Test unit written to findings/timeout-5f\n";
         assert!(

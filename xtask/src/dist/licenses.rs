@@ -1,4 +1,4 @@
-//! The page that lists the other authors' crates in the wasm, with their licenses.
+//! The page that lists the third-party crates in the wasm, with their licenses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -14,27 +14,28 @@ use crate::{root, run};
 const PACKAGE: &str = "stepscope-wasm";
 
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Part {
+struct ThirdPartyCrate {
     name: String,
     version: String,
-    licence: String,
+    license: String,
     /// If the license offers a choice, only the texts of the shortest option.
     texts: Vec<String>,
 }
 
+/// The page as HTML.
 pub(super) async fn page() -> Result<String> {
     let own = std::fs::read_to_string(root().join("LICENSE-MIT")).context("LICENSE-MIT can't be read")?;
-    Ok(print(&parts().await?, &own))
+    Ok(html(&third_party_crates().await?, &own))
 }
 
-async fn parts() -> Result<Vec<Part>> {
+async fn third_party_crates() -> Result<Vec<ThirdPartyCrate>> {
     let mut tree = toolchain::cargo();
     tree.args(["tree", "--locked", "--package", PACKAGE, "--target", WASM]);
     tree.args(["--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}"]);
     let mut metadata = toolchain::cargo();
     metadata.args(["metadata", "--locked", "--format-version", "1", "--filter-platform", WASM]);
-    let (tree, metadata) = (answer(tree).await?, answer(metadata).await?);
-    let wanted: BTreeSet<(&str, &str)> = tree.lines().filter_map(named).collect();
+    let (tree, metadata) = (cargo_output(tree).await?, cargo_output(metadata).await?);
+    let wanted: BTreeSet<(&str, &str)> = tree.lines().filter_map(name_and_version).collect();
 
     #[derive(Deserialize)]
     struct Metadata {
@@ -49,32 +50,33 @@ async fn parts() -> Result<Vec<Part>> {
         source: Option<String>,
     }
     let metadata: Metadata = serde_json::from_str(&metadata).context("cargo metadata")?;
-    let mut parts = Vec::new();
+    let mut crates = Vec::new();
     for Package { name, version, license, manifest_path, source } in metadata.packages {
         if source.is_some() && wanted.contains(&(&name, &version)) {
-            let licence = license.with_context(|| format!("{name} {version} names no licence"))?;
-            let folder = manifest_path.parent().with_context(|| format!("{name} lies nowhere"))?;
+            let license = license.with_context(|| format!("{name} {version} has no license"))?;
+            let folder = manifest_path.parent().with_context(|| format!("{name} has no folder"))?;
             let texts =
-                texts(folder, &licence).with_context(|| format!("the licence of {name} {version}"))?;
-            parts.push(Part { name, version, licence, texts });
+                texts(folder, &license).with_context(|| format!("the license of {name} {version}"))?;
+            crates.push(ThirdPartyCrate { name, version, license, texts });
         }
     }
-    ensure!(!parts.is_empty(), "cargo tree names no crate of others in {PACKAGE}");
-    parts.sort();
-    Ok(parts)
+    ensure!(!crates.is_empty(), "cargo tree lists no third-party crate in {PACKAGE}");
+    crates.sort();
+    Ok(crates)
 }
 
-async fn answer(command: Command) -> Result<String> {
-    run::output(command).await.context("cargo does not say of which crates the page is made")
+async fn cargo_output(command: Command) -> Result<String> {
+    run::output(command).await.context("cargo does not list the crates of the page")
 }
 
-fn named(line: &str) -> Option<(&str, &str)> {
+/// Of a line of `cargo tree`.
+fn name_and_version(line: &str) -> Option<(&str, &str)> {
     let mut words = line.split_whitespace();
     Some((words.next()?, words.next()?.strip_prefix('v')?))
 }
 
-/// If the license offers a choice that includes MIT, only MIT's text.
-fn texts(folder: &Path, licence: &str) -> Result<Vec<String>> {
+/// The texts of the licenses in a crate's folder; only MIT's if the license offers it as a choice.
+fn texts(folder: &Path, license: &str) -> Result<Vec<String>> {
     let mut files: Vec<String> = std::fs::read_dir(folder)?
         .flatten()
         .filter(|entry| entry.path().is_file())
@@ -88,7 +90,7 @@ fn texts(folder: &Path, licence: &str) -> Result<Vec<String>> {
     });
     files.sort();
     let mut texts = Vec::new();
-    for file in chosen(&files, licence) {
+    for file in chosen(&files, license) {
         let text = std::fs::read_to_string(folder.join(file)).with_context(|| file.to_owned())?;
         let lines: Vec<&str> = text.lines().map(str::trim_end).collect();
         texts.push(lines.join("\n").trim_matches('\n').to_owned());
@@ -96,28 +98,29 @@ fn texts(folder: &Path, licence: &str) -> Result<Vec<String>> {
     Ok(texts)
 }
 
-fn chosen<'a>(files: &'a [String], licence: &str) -> Vec<&'a str> {
+/// The files whose texts the page shows.
+fn chosen<'a>(files: &'a [String], license: &str) -> Vec<&'a str> {
     let has = |file: &str, word: &str| file.to_uppercase().contains(word);
-    let of_mit = files.iter().any(|file| has(file, "MIT")) && licence.contains("MIT");
-    let wanted = |file: &&str| match (of_mit, licence.contains(" AND ")) {
+    let has_mit = files.iter().any(|file| has(file, "MIT")) && license.contains("MIT");
+    let is_chosen = |file: &&str| match (has_mit, license.contains(" AND ")) {
         (false, _) => true,
         (true, false) => has(file, "MIT"),
         (true, true) => !has(file, "APACHE"),
     };
-    files.iter().map(String::as_str).filter(wanted).collect()
+    files.iter().map(String::as_str).filter(is_chosen).collect()
 }
 
-fn print(parts: &[Part], own: &str) -> String {
+fn html(crates: &[ThirdPartyCrate], own: &str) -> String {
     let mut page = String::from(HEAD);
-    let _ = write!(page, "<pre>{}</pre>\n<h2>What it is made of</h2>\n<ul>\n", escaped(own.trim()));
-    for Part { name, version, licence, .. } in parts {
-        let _ = writeln!(page, "<li>{} {}: {}</li>", escaped(name), escaped(version), escaped(licence));
+    let _ = write!(page, "<pre>{}</pre>\n<h2>Third-party crates</h2>\n<ul>\n", escaped(own.trim()));
+    for ThirdPartyCrate { name, version, license, .. } in crates {
+        let _ = writeln!(page, "<li>{} {}: {}</li>", escaped(name), escaped(version), escaped(license));
     }
-    page.push_str("<li>the Rust standard library: MIT OR Apache-2.0</li>\n</ul>\n");
+    page.push_str("<li>The Rust standard library: MIT OR Apache-2.0</li>\n</ul>\n");
     let mut shared: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for part in parts {
-        for text in &part.texts {
-            shared.entry(text).or_default().push(&part.name);
+    for one in crates {
+        for text in &one.texts {
+            shared.entry(text).or_default().push(&one.name);
         }
     }
     let mut shared: Vec<(Vec<&str>, &str)> = shared.into_iter().map(|(text, names)| (names, text)).collect();
@@ -137,12 +140,12 @@ const HEAD: &str = "<!doctype html>
 <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">
 <meta name=\"referrer\" content=\"no-referrer\">
 <meta name=\"color-scheme\" content=\"light dark\">
-<title>Licences – Stepscope</title>
+<title>Licenses – Stepscope</title>
 <link rel=\"icon\" href=\"data:,\">
 </head>
 <body>
 <p><a href=\"./\">Back to Stepscope</a></p>
-<h1>Licences</h1>
+<h1>Licenses</h1>
 <p>Stepscope is licensed under MIT or Apache-2.0, at your choice.</p>
 ";
 
@@ -155,8 +158,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn of_a_choice_mit_goes_along_and_of_both_all() {
-        for (files, licence, expected) in [
+    fn mit_is_shown_where_it_is_a_choice_and_else_all_licenses() {
+        for (files, license, expected) in [
             (vec!["LICENSE-APACHE", "LICENSE-MIT"], "MIT OR Apache-2.0", vec!["LICENSE-MIT"]),
             (vec!["LICENSE"], "MIT", vec!["LICENSE"]),
             (
@@ -167,29 +170,30 @@ mod tests {
             (vec!["COPYING", "LICENSE-BSD"], "0BSD", vec!["COPYING", "LICENSE-BSD"]),
         ] {
             let files: Vec<String> = files.into_iter().map(str::to_owned).collect();
-            assert_eq!(chosen(&files, licence), expected, "{licence}");
+            assert_eq!(chosen(&files, license), expected, "{license}");
         }
     }
 
     #[test]
-    fn a_text_stands_once_under_all_that_share_it() {
-        let part = |name: &str, text: &str| Part {
+    fn crates_with_the_same_license_text_share_it() {
+        let with_text = |name: &str, text: &str| ThirdPartyCrate {
             name: name.to_owned(),
             version: "1.0.0".to_owned(),
-            licence: "MIT".to_owned(),
+            license: "MIT".to_owned(),
             texts: vec![text.to_owned()],
         };
-        let page = print(&[part("a", "one <b>"), part("b", "two"), part("c", "one <b>")], "own & all");
+        let crates = [with_text("a", "one <b>"), with_text("b", "two"), with_text("c", "one <b>")];
+        let page = html(&crates, "own & all");
         assert_eq!(page.matches("one &lt;b&gt;").count(), 1, "{page}");
         assert!(page.contains("<h3>a, c</h3>") && page.contains("<h3>b</h3>"), "{page}");
         assert!(page.contains("<li>b 1.0.0: MIT</li>") && page.contains("own &amp; all"), "{page}");
     }
 
     #[tokio::test]
-    async fn the_wasms_own_crates_are_found_with_their_texts() {
-        let parts = parts().await.unwrap();
-        let rustfft = parts.iter().find(|part| part.name == "rustfft").unwrap();
-        assert!(rustfft.licence.contains("MIT") && !rustfft.texts.is_empty(), "{rustfft:?}");
-        assert!(parts.iter().all(|part| !part.name.starts_with("stepscope") && part.name != "serde_derive"));
+    async fn third_party_crates_of_the_wasm_are_found_with_their_texts() {
+        let crates = third_party_crates().await.unwrap();
+        let rustfft = crates.iter().find(|one| one.name == "rustfft").unwrap();
+        assert!(rustfft.license.contains("MIT") && !rustfft.texts.is_empty(), "{rustfft:?}");
+        assert!(crates.iter().all(|one| !one.name.starts_with("stepscope") && one.name != "serde_derive"));
     }
 }
