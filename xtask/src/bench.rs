@@ -115,7 +115,6 @@ pub(crate) fn published() -> Result<()> {
     published::write()
 }
 
-/// A working tree and its builds.
 struct Tree {
     root: PathBuf,
     home: PathBuf,
@@ -161,7 +160,6 @@ impl Tree {
         Ok(Self { root: tree, target: Some(home.join("target")), home })
     }
 
-    /// Runs a command in this tree.
     fn in_tree(&self, mut command: Command) -> Command {
         command.current_dir(&self.root);
         if let Some(target) = &self.target {

@@ -10,7 +10,6 @@ use twox_hash::XxHash64;
 
 use crate::{THIS_PROGRAM, files, root, toolchain};
 
-/// Files that affect every build.
 const WORKSPACE: [&str; 3] = ["Cargo.toml", "Cargo.lock", ".cargo/config.toml"];
 
 /// Prefixes of environment variables that change cargo's or rustc's result.
@@ -29,7 +28,6 @@ pub(crate) struct BuildRecord<'a> {
     sources: &'a [&'a str],
     /// Options, version of Rust, and environment variables.
     options: Vec<String>,
-    /// Where the record is saved.
     file: PathBuf,
     /// Hash of all inputs at the start.
     inputs: u64,
@@ -59,7 +57,6 @@ impl<'a> BuildRecord<'a> {
         Ok(self.folder.is_dir() && saved == self.text()?)
     }
 
-    /// Removes the folder and its record.
     pub(crate) fn clear(&self) -> Result<()> {
         if self.file.exists() {
             files::remove(&self.file)?;

@@ -36,7 +36,6 @@ pub(crate) fn folder() -> PathBuf {
     root().join("dist")
 }
 
-/// The files of a build.
 #[derive(Debug, Default)]
 pub(crate) struct Parts {
     /// Files that load when the page opens.
@@ -93,7 +92,6 @@ const LATER: [&[&str]; 4] = [
     &["data-live-worker=\"", "data-tools-core=\"", "data-live-style=\""],
 ];
 
-/// All files that a page references.
 fn references(text: &str) -> impl Iterator<Item = &str> {
     references_in(text, &IMMEDIATE).chain(LATER.iter().flat_map(move |row| references_in(text, row)))
 }
@@ -125,7 +123,6 @@ impl Site {
         Ok(Self { texts, headers: read(headers::FILE)? })
     }
 
-    /// Names and texts of the pages and the manifest.
     fn pages(&self) -> impl Iterator<Item = (&str, &str)> {
         let texts = self.texts.iter().filter(|(name, _)| is_page(name));
         texts.map(|(name, text)| (name.as_str(), text.as_str()))
@@ -136,7 +133,6 @@ impl Site {
         self.pages().flat_map(|(_, text)| references(text)).filter(|file| !is_page(file)).collect()
     }
 
-    /// The main script of the page.
     fn script(&self) -> Result<&str> {
         let page = self.texts.get(PAGE).map_or("", String::as_str);
         references_in(page, &["src=\""]).next().with_context(|| format!("{PAGE} references no script"))
@@ -148,7 +144,6 @@ impl Site {
         references_in(text, attributes).filter_map(|source| bundles.file_of(source)).collect()
     }
 
-    /// The texts of the build, by name.
     fn texts_of_build(
         &self,
         bundles: &Bundles,

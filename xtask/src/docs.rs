@@ -10,9 +10,7 @@ use pulldown_cmark::{CowStr, Event, Options, Parser, Tag, TagEnd, html};
 
 use crate::{files, root};
 
-/// Its folder in `dist/`.
 pub(crate) const FOLDER: &str = "docs";
-/// Its address in links of the page.
 pub(crate) const LINK: &str = "docs/";
 const SUMMARY: &str = "docs/SUMMARY.md";
 const STYLE: &str = include_str!("docs/site.css");
@@ -30,7 +28,6 @@ pub(crate) fn build(site: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A source of a page.
 #[derive(Debug)]
 struct Chapter {
     /// Heading above it in the summary.
@@ -47,7 +44,6 @@ struct Book {
     chapters: Vec<Chapter>,
 }
 
-/// A page as HTML.
 struct Page {
     body: String,
     ids: BTreeSet<String>,
@@ -59,9 +55,7 @@ struct Page {
 
 /// The target of a link.
 enum Target {
-    /// Another site.
     External,
-    /// The output of a page.
     Page(String),
     /// A file of `docs/`, copied.
     Copy(PathBuf),
@@ -297,7 +291,6 @@ fn output_of(source: &Path) -> String {
     file.to_string_lossy().replace('\\', "/")
 }
 
-/// The relative address of the site's root.
 fn up(output: &str) -> String {
     "../".repeat(output.matches('/').count())
 }

@@ -20,9 +20,7 @@ use tokio::process::Command;
 use crate::{files, root, run, toolchain, tools};
 use report::Report;
 
-/// Time for a target to end after its seconds.
 const GRACE: Duration = Duration::from_secs(120);
-/// Limits per input.
 const INPUT_SECONDS: u32 = 10;
 const MEMORY_MB: u32 = 2048;
 
@@ -101,7 +99,6 @@ async fn build(manifest: &Path, folder: &Path) -> Result<PathBuf> {
     Ok(folder.join(triple).join("release"))
 }
 
-/// Writes the first inputs of all targets.
 async fn inputs(home: &Path) -> Result<()> {
     let mut command = toolchain::cargo();
     command.args(["run", "--quiet", "--locked", "--package", "stepscope-tests", "--example", "fuzz-inputs"]);

@@ -23,12 +23,10 @@ pub(crate) async fn test() -> Result<()> {
     run::cargo_test(command).await
 }
 
-/// Installs socat if it is missing.
 pub(crate) async fn socat() -> Result<()> {
     apt::require("the test of live commands", &["socat"], &["socat"]).await
 }
 
-/// A Python with the packages.
 pub(crate) async fn python() -> Result<PathBuf> {
     let home = cache()?.join("tools").join(HOME);
     let python = home.join("bin").join("python");

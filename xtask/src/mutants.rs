@@ -43,7 +43,6 @@ const MIN_CAUGHT_PERCENT: usize = 95;
 const TEST_LIMIT: Duration = Duration::from_secs(2 * 60);
 /// Maximum time for the copy, its first build and the unchanged tests.
 const SETUP_LIMIT: Duration = Duration::from_secs(40 * 60);
-/// Maximum time per mutant.
 const MUTANT_LIMIT: Duration = Duration::from_secs(4 * 60);
 
 pub(crate) struct Options {

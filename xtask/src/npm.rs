@@ -74,13 +74,11 @@ fn reports_version(output: &str, version: &str) -> bool {
     output.split_whitespace().any(|word| word == version)
 }
 
-/// A program of Node.js; installs it if missing.
 pub(crate) async fn node_program(name: &str) -> Result<PathBuf> {
     apt::require("this step", &[name], &["nodejs", "npm"]).await?;
     which::which(name).with_context(|| format!("{name} is not on PATH"))
 }
 
-/// The script of axe-core, which checks accessibility.
 pub(crate) async fn axe() -> Result<PathBuf> {
     let cache = cache()?;
     let script = AXE.modules(&cache).join("axe-core").join("axe.min.js");

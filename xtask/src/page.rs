@@ -27,7 +27,6 @@ pub(crate) async fn built() -> Result<&'static Parts> {
     BUILT.get_or_try_init(|| shipped(Optimize::Yes)).await
 }
 
-/// Builds the wasm and the page into `dist/`.
 pub(crate) async fn shipped(optimize: Optimize) -> Result<Parts> {
     build(optimize).await?;
     dist::make(&root().join("web"), &dist::folder()).await
@@ -52,7 +51,6 @@ pub(crate) async fn build(optimize: Optimize) -> Result<()> {
     Ok(())
 }
 
-/// Builds the npm package into the folder `package`.
 pub(crate) async fn npm(package: &Path) -> Result<()> {
     let tools = WasmTools::ready(Optimize::Yes).await?;
     let record = build_record(&tools, package, &[]).await?;

@@ -42,7 +42,6 @@ impl Group {
         Ok(())
     }
 
-    /// Kills the group.
     pub(crate) async fn kill(mut self) -> Result<()> {
         self.0.start_kill()?;
         self.0.wait().await?;
@@ -56,7 +55,6 @@ impl Drop for Group {
     }
 }
 
-/// Starts a child in its own process group.
 pub(crate) fn start(mut command: Command) -> Result<Group> {
     let name = name(&command);
     command.stdin(Stdio::null());
@@ -184,7 +182,6 @@ fn forward(mut from: PipeReader, mut to: impl Write + Send + 'static, activity: 
     });
 }
 
-/// The command line for messages.
 fn name(command: &Command) -> String {
     let command = command.as_std();
     let program = Path::new(command.get_program());

@@ -38,7 +38,6 @@ fn has_serial_ports(drivers: &str) -> bool {
     })
 }
 
-/// The path of the command, built.
 pub(crate) async fn command() -> Result<PathBuf> {
     let mut build = toolchain::cargo();
     build.args(["build", "--workspace", "--bin", "stepscope", "--locked"]);

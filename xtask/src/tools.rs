@@ -211,12 +211,10 @@ async fn version_of_subcommand(program: &Path) -> Option<String> {
     run::output(command).await
 }
 
-/// The program in this folder.
 pub(crate) fn find(program: &str, folder: &Path) -> Option<PathBuf> {
     which::which_in(program, Some(folder), root()).ok()
 }
 
-/// The folder for tools in the user cache.
 pub(crate) fn cache() -> Result<PathBuf> {
     let strategy = etcetera::base_strategy::choose_native_strategy().context("there is no home folder")?;
     Ok(strategy.cache_dir().join("stepscope"))

@@ -21,11 +21,9 @@ use crate::{
 use alloc::vec::Vec;
 use core::{fmt, ops::RangeInclusive};
 
-/// The receiver needs this many cycles per bit.
 const MIN_BIT_CYCLES: u64 = 11;
 
 /// The range of each number; [`Config::new`] has rules that combine several.
-#[allow(missing_docs, reason = "named like the fields of `Bus`")]
 pub mod limits {
     use crate::signal::MAX_CHANNELS;
     use core::ops::RangeInclusive;
@@ -61,11 +59,8 @@ pub struct Bus {
     pub dir_setup_cycles: u32,
     /// H, time that DIR is held after STEP has fallen.
     pub dir_hold_cycles: u32,
-    /// Slots of a tick in which a channel steps.
     pub distribution: Distribution,
-    /// One DIR line per channel, or one for all.
     pub dir_line: DirLine,
-    /// When the pulses of a slot rise.
     pub pulse_phasing: PulsePhasing,
     /// dp, settling time of the drivers' supply current after a step (the patent's delta t_p): the maximum distance of
     /// staggered pulses.
@@ -118,7 +113,6 @@ pub enum DirLine {
 /// When the pulses of one slot rise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PulsePhasing {
-    /// All at once.
     #[default]
     Simultaneous,
     /// One after another, so that the drivers' current peaks do not add up.
@@ -134,7 +128,6 @@ pub struct SerialLine {
     pub receiver_baud: Option<u32>,
     /// 0 to 254 if packets begin with an address; 0 by default on a framed line.
     pub address: Option<u8>,
-    /// How bytes form commands.
     pub protocol: Protocol,
 }
 
@@ -157,11 +150,8 @@ pub enum Protocol {
 /// The field to change; it displays as a path such as `bus.slots`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
-    /// The clock.
     ClockHz,
-    /// A field of [`Bus`].
     Bus(&'static str),
-    /// A field of [`SerialLine`].
     Line(&'static str),
 }
 
@@ -177,7 +167,6 @@ impl fmt::Display for Field {
 
 /// A broken rule and the field to change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "named like their types")]
 pub struct ConfigProblem {
     pub field: Field,
     pub error: ConfigError,
@@ -194,9 +183,7 @@ impl core::error::Error for ConfigProblem {}
 /// A broken rule, with its numbers. Times are in cycles, rates in baud.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-#[allow(missing_docs, reason = "names of times and rates")]
 pub enum ConfigError {
-    /// A number is out of its range.
     Range {
         given: u64,
         min: u64,
@@ -204,9 +191,12 @@ pub enum ConfigError {
         /// Unit of all three, empty for a plain count.
         unit: &'static str,
     },
-    /// The clock is too slow for the bit rate.
-    BitTooShort { bit_cycles: u64, baud: u32, clock_hz: u32, max_baud: u32 },
-    /// The pulses of a slot do not fit in it.
+    BitTooShort {
+        bit_cycles: u64,
+        baud: u32,
+        clock_hz: u32,
+        max_baud: u32,
+    },
     PulseTooLong {
         width: u64,
         setup: u64,
@@ -220,7 +210,13 @@ pub enum ConfigError {
         period: u64,
     },
     /// Staggered pulses on a common DIR line are closer than one lasts.
-    SettleTooShort { settle: u64, width: u64, setup: u64, hold: u64, needed: u64 },
+    SettleTooShort {
+        settle: u64,
+        width: u64,
+        setup: u64,
+        hold: u64,
+        needed: u64,
+    },
 }
 
 impl fmt::Display for ConfigError {
@@ -388,7 +384,6 @@ impl Config {
     }
 }
 
-/// Collects broken rules.
 #[derive(Default)]
 struct Rules {
     broken: Vec<ConfigProblem>,
@@ -407,7 +402,6 @@ impl Rules {
         }
     }
 
-    /// The rules for single numbers.
     fn ranges(&mut self, clock_hz: u32, bus: &Bus, line: &SerialLine) {
         self.range(Field::ClockHz, clock_hz, limits::CLOCK_HZ, "Hz");
         self.range(Field::Bus("channels"), bus.channels, limits::CHANNELS, "");
@@ -427,7 +421,6 @@ impl Rules {
         self.range(Field::Bus("settle_cycles"), bus.settle_cycles, limits::SETTLE_CYCLES, "cycles");
     }
 
-    /// The receiver's clock must be fast enough for its bit rate.
     fn bit_rate(&mut self, clock_hz: u32, line: &SerialLine) {
         let (field, baud) = match line.receiver_baud {
             Some(baud) => (Field::Line("receiver_baud"), baud),

@@ -19,6 +19,7 @@
 //! assert_eq!(trace.len(), 1); // only reset: no sender
 //! ```
 #![cfg_attr(not(test), no_std)]
+#![allow(missing_docs, reason = "fields and variants whose names state meaning and unit")]
 
 extern crate alloc;
 

@@ -82,7 +82,6 @@ byte_enums! {
         Stopped = 5 "STOPPED",
         /// The body does not fit the kind or the number of channels.
         BadBody = 6 "BAD_BODY",
-        /// No such kind.
         UnknownKind = 7 "UNKNOWN_KIND",
     }
 
@@ -90,7 +89,6 @@ byte_enums! {
     pub enum State {
         /// In the self-test after reset.
         Busy = 0 "BUSY",
-        /// Idle.
         Ready = 1 "READY",
         /// A tick runs or waits.
         Moving = 2 "MOVING",
@@ -117,11 +115,9 @@ pub struct Status {
 /// A reply; the counters of POSITIONS are [`Positions`](crate::signal::Positions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reply {
-    /// Address of the controller.
     pub address: u8,
     /// The executed kind, or the reason of the refusal.
     pub result: Result<Kind, Reason>,
-    /// Status after the frame.
     pub status: Status,
 }
 
@@ -132,19 +128,14 @@ pub enum FrameOutcome {
     Queued(u8),
     /// Acknowledged again, but not queued again.
     Repeated,
-    /// Executed.
     Executed(Kind),
     /// Refused; only fault flags changed.
     Refused(Reason),
-    /// It was for another controller.
     OtherAddress,
     /// Invalid COBS, or too short.
     Short,
-    /// Its CRC is wrong.
     BadCrc {
-        /// The received CRC.
         found: u32,
-        /// The CRC of the content.
         expected: u32,
     },
     /// Too long; bytes are dropped up to the next delimiter.

@@ -61,7 +61,6 @@ pub enum Segment {
 pub struct SegmentList {
     /// Start of the first segment, cycle 1 or later.
     pub start: Instant,
-    /// The segments in order.
     pub segments: Vec<Segment>,
 }
 
@@ -91,7 +90,6 @@ pub enum Refusal {
     NoChannel,
     /// The start is before cycle 1, or after [`LAST_CYCLE`].
     Start,
-    /// A segment has 0 steps.
     NoSteps,
     /// An interval is too short for a pulse or exceeds 64 bits.
     Interval {
@@ -114,7 +112,6 @@ pub struct Refused {
     pub channel: usize,
     /// Index of the segment; `None` where the list itself is refused.
     pub segment: Option<usize>,
-    /// The reason.
     pub refusal: Refusal,
 }
 
@@ -125,7 +122,6 @@ pub struct CheckedSegments {
     pulse: PulseTimes,
     lists: Vec<SegmentList>,
     steps: u64,
-    /// Changes of DIR.
     dir_changes: u64,
     end: Instant,
 }

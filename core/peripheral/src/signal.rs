@@ -29,7 +29,6 @@ use crate::{
 };
 use alloc::vec::Vec;
 
-/// Channels of the driver bus.
 pub const MAX_CHANNELS: usize = 16;
 
 /// Levels of all signals in one cycle.
@@ -50,9 +49,7 @@ impl Levels {
     pub const DIR_SHIFT: u32 = 16;
     /// Mask of EN, high while the windings are powered.
     pub const EN: u64 = 1 << 32;
-    /// Mask of RX.
     pub const RX: u64 = 1 << 33;
-    /// Mask of TX.
     pub const TX: u64 = 1 << 34;
     /// Mask of DE, high while the controller drives the line.
     pub const DE: u64 = 1 << 35;
@@ -99,7 +96,6 @@ pub fn name(bit: u32) -> Option<alloc::string::String> {
 pub struct Record {
     /// First cycle with these levels.
     pub cycle: Instant,
-    /// Levels of all signals.
     pub levels: Levels,
 }
 
@@ -130,9 +126,7 @@ impl Positions {
 /// An event that is not a change of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-#[allow(missing_docs, reason = "only fields whose names say all")]
 pub enum Event {
-    /// A byte was received.
     Byte {
         /// Cycle in which its start bit was detected.
         start: Instant,
@@ -177,7 +171,6 @@ pub enum Event {
         /// One byte per channel.
         commands: [u8; MAX_CHANNELS],
     },
-    /// A tick ended.
     TickEnd,
     /// The panel of a stand-alone controller changed.
     Panel {
@@ -201,17 +194,12 @@ pub enum Event {
 /// What became of a raw packet; all but `Queued` drop it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PacketOutcome {
-    /// It became a tick in the queue.
     Queued,
-    /// It was for another controller.
     OtherAddress,
     /// It ended during the self-test.
     Booting,
-    /// The controller is stopped.
     Stopped,
-    /// A byte requests more steps than a tick has slots.
     TooManySteps,
-    /// The queue has no free place.
     QueueFull,
 }
 

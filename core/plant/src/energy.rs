@@ -30,7 +30,6 @@ pub struct EnergyBalance {
     pub friction: f64,
     /// Losses to viscous friction and the damping of the coupling.
     pub viscous: f64,
-    /// Losses in the diodes of the bridge.
     pub diodes: f64,
     /// Work against gravity and the sinusoidal torque of the load.
     pub load: f64,

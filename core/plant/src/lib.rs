@@ -20,6 +20,7 @@
 //! assert!((plant.state(0).expect("a motor").x - 1.0).abs() < 0.05);
 //! ```
 #![cfg_attr(not(test), no_std)]
+#![allow(missing_docs, reason = "fields and variants whose names state meaning and unit")]
 
 extern crate alloc;
 

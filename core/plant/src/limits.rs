@@ -4,8 +4,6 @@
 //! assert!(stepscope_plant::limits::SOURCE_OHM.contains(&0.1));
 //! ```
 
-#![allow(missing_docs, reason = "named like the fields of `parameters`")]
-
 use core::ops::RangeInclusive;
 
 /// Friction, stiction, detent, or the amplitude of a torque.

@@ -150,16 +150,13 @@ const MIN_STEPS: u64 = 8;
 /// An extreme value and its grid point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
-    /// The value.
     pub value: f64,
-    /// The cycle of its grid point.
     pub cycle: u64,
 }
 
 /// The measures of a motor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotorResult {
-    /// Its state at the end.
     pub state: State,
     /// Commanded position in full steps.
     pub command: f64,
@@ -167,7 +164,6 @@ pub struct MotorResult {
     pub lost: i64,
     /// The first [`MAX_SLIPS`] slips of four full steps.
     pub slips: Vec<Slip>,
-    /// Number of all slips.
     pub slip_count: u64,
     /// Steps before the first slip.
     pub first_slip_step: Option<u64>,
@@ -181,22 +177,18 @@ pub struct MotorResult {
     pub overshoot: Option<f64>,
     /// Cycles from the last step until the rotor stays within 0.05 full steps of its final position; `None` without a step.
     pub settling: Option<u64>,
-    /// Cycle of the last step.
     pub last_step: Option<u64>,
     /// Larger peak of both phase currents in A.
     pub phase_peak_a: f64,
     /// Root mean square of both phase currents in A.
     pub phase_rms_a: f64,
-    /// Energies since the start.
     pub energy: EnergyBalance,
 }
 
 /// The measures of a plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantResult {
-    /// The last grid point.
     pub cycle: u64,
-    /// Digest of all points.
     pub digest: u64,
     /// One per channel.
     pub motors: Vec<MotorResult>,

@@ -12,8 +12,6 @@
 //! assert_eq!(plant.step_cycles(), 16, "a grid step is 1 us with a chopper");
 //! ```
 
-#![allow(missing_docs, reason = "fields whose names state quantity and unit")]
-
 use alloc::vec::Vec;
 use stepscope_peripheral::parameters;
 
@@ -55,9 +53,7 @@ impl CurrentDecay {
 parameters! { (Clone, Debug, PartialEq)
     /// The driver of a motor.
     pub struct DriverModel {
-        /// How it regulates the current.
         pub regulator: CurrentControl = CurrentControl::Averaged,
-        /// How fast the current decays.
         pub decay: CurrentDecay = CurrentDecay::Fast,
         /// Off-time of a chopper.
         pub off_us: f64 = 20.0,

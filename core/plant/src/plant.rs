@@ -51,7 +51,6 @@ pub struct Plant {
 pub struct PointEvents {
     /// The current sensor made a conversion.
     pub converted: bool,
-    /// The encoders were read.
     pub encoded: bool,
     /// The conversion completed an overload.
     pub overload: bool,

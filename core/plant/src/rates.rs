@@ -168,7 +168,6 @@ pub fn pulls(setup: &Setup, rate: f64, a: f64) -> Result<bool, Vec<Refused>> {
 pub struct Resonance {
     /// Peak-to-peak value of rate*t - x in the second half, in full steps.
     pub peak_to_peak: f64,
-    /// It lost steps.
     pub loses_steps: bool,
 }
 

@@ -13,20 +13,11 @@ use stepscope_peripheral::signal::MAX_CHANNELS;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
     /// A number is out of its range.
-    #[allow(missing_docs, reason = "the names say it")]
     Range { field: &'static str, given: f64, min: f64, max: f64 },
     /// A criterion of [`stability`](crate::stability) is above 0.25: the grid is too coarse for this motor.
-    Unstable {
-        /// The criterion.
-        criterion: Criterion,
-        /// Its value.
-        value: f64,
-        /// Cycles per grid step.
-        step_cycles: u32,
-    },
+    Unstable { criterion: Criterion, value: f64, step_cycles: u32 },
     /// The source cannot supply the motors at rest.
     TooWeak {
-        /// Resistance of the source.
         source_ohm: f64,
         /// Power of the windings at rest in W.
         power_w: f64,
@@ -38,7 +29,6 @@ pub enum Refusal {
 pub struct Refused {
     /// Index of the motor; `None` for the whole plant.
     pub channel: Option<usize>,
-    /// The reason.
     pub refusal: Refusal,
 }
 

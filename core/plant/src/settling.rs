@@ -21,7 +21,6 @@ pub const REST_STEPS: u64 = 10;
 /// A reading of the current sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Its grid point.
     pub cycle: u64,
     /// In A, or in codes of the converter; results have the same unit.
     pub current: f64,
@@ -30,11 +29,8 @@ pub struct Sample {
 /// The supply current around one step of a motor at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepResponse {
-    /// Mean before the step.
     pub rest_a: f64,
-    /// Minimum after the step.
     pub min_a: f64,
-    /// Maximum after the step.
     pub max_a: f64,
     /// Cycles from the rise of STEP to the first sample after the maximum that is at most a share of the peak above rest.
     /// `None` if not within a step period, or if no sample differs from rest.
@@ -109,7 +105,6 @@ impl Deviation {
 /// Records the readings of the current sensor.
 #[derive(Clone, Debug, Default)]
 pub struct SensorLog {
-    /// One per grid point.
     pub samples: Vec<Sample>,
     /// Rises of STEP of channel 0.
     pub steps: Vec<u64>,

@@ -68,7 +68,6 @@ impl Drop for Page {
     }
 }
 
-/// The next report of the page.
 async fn receive(messages: &mut mpsc::Receiver<Message>, log: &Path) -> Result<String> {
     match tokio::time::timeout(TIMEOUT, messages.recv()).await {
         Ok(Some(Message::Report(text))) => Ok(text),

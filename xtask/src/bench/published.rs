@@ -21,7 +21,6 @@ pub(super) fn write() -> Result<()> {
     files::write(&page, with_table(&files::read(&page)?, &table)?)
 }
 
-/// Relative to the workspace.
 fn shown(path: &Path) -> String {
     path.strip_prefix(root()).unwrap_or(path).display().to_string()
 }

@@ -18,7 +18,6 @@ use crate::{files, run};
 
 const ESBUILD: NpmPackage = NpmPackage { package: "esbuild", version: "0.28.2" };
 
-/// A copy of the sources in a temporary folder.
 struct SourceCopy {
     folder: PathBuf,
 }
@@ -105,7 +104,6 @@ fn reached<'a>(inputs: &'a BTreeMap<String, Input>, mut queue: Vec<&'a str>) -> 
     found
 }
 
-/// The files that esbuild made, by path.
 #[derive(Debug)]
 pub(super) struct Bundles(BTreeMap<String, Output>);
 
@@ -168,7 +166,6 @@ impl Bundles {
         self.0.keys().map(String::as_str)
     }
 
-    /// The file made from an entry.
     pub(super) fn file_of(&self, source: &str) -> Option<&str> {
         let found = self.0.iter().find(|(_, output)| output.entry.as_deref() == Some(source));
         found.map(|(path, _)| path.as_str())

@@ -22,7 +22,6 @@ struct ThirdPartyCrate {
     texts: Vec<String>,
 }
 
-/// The page as HTML.
 pub(super) async fn page() -> Result<String> {
     let own = std::fs::read_to_string(root().join("LICENSE-MIT")).context("LICENSE-MIT can't be read")?;
     Ok(html(&third_party_crates().await?, &own))
@@ -69,7 +68,6 @@ async fn cargo_output(command: Command) -> Result<String> {
     run::output(command).await.context("cargo does not list the crates of the page")
 }
 
-/// Of a line of `cargo tree`.
 fn name_and_version(line: &str) -> Option<(&str, &str)> {
     let mut words = line.split_whitespace();
     Some((words.next()?, words.next()?.strip_prefix('v')?))
@@ -98,7 +96,6 @@ fn texts(folder: &Path, license: &str) -> Result<Vec<String>> {
     Ok(texts)
 }
 
-/// The files whose texts the page shows.
 fn chosen<'a>(files: &'a [String], license: &str) -> Vec<&'a str> {
     let has = |file: &str, word: &str| file.to_uppercase().contains(word);
     let has_mit = files.iter().any(|file| has(file, "MIT")) && license.contains("MIT");

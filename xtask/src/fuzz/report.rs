@@ -13,9 +13,7 @@ pub(crate) struct Report {
     new_inputs: u64,
     slowest_s: u64,
     memory_mb: u64,
-    /// File of the failing input.
     pub(crate) finding: Option<String>,
-    /// Its error.
     error: Vec<String>,
 }
 

@@ -2,7 +2,6 @@
 
 use stepscope_registers::faults;
 
-/// All fault bits.
 const KNOWN: u16 = {
     let (mut bits, mut flags) = (0, faults::REGISTER.fields);
     while let [flag, rest @ ..] = flags {
@@ -17,11 +16,9 @@ const KNOWN: u16 = {
 pub struct Faults(u16);
 
 impl Faults {
-    /// A stop bit was low.
     pub const FRAMING: Self = Self(faults::FRAMING.mask() as u16);
     /// A gap cut a packet short, or a frame was invalid COBS or decoded to fewer than 6 bytes.
     pub const SHORT_PACKET: Self = Self(faults::SHORT_PACKET.mask() as u16);
-    /// The CRC of a frame was wrong.
     pub const CRC: Self = Self(faults::CRC.mask() as u16);
     /// A frame had more than 600 decoded bytes.
     pub const OVERLONG: Self = Self(faults::OVERLONG.mask() as u16);
@@ -38,7 +35,6 @@ impl Faults {
     /// The self-test found no settling time on some channel.
     pub const SELF_TEST: Self = Self(faults::SELF_TEST.mask() as u16);
 
-    /// All faults.
     pub const ALL: Self = Self::from_bits(u16::MAX);
 
     pub(super) const fn set(&mut self, fault: Self) {

@@ -77,7 +77,6 @@ impl FramedProtocol {
     }
 }
 
-/// Executes one frame.
 struct Execution<'a> {
     now: Instant,
     channels: u8,

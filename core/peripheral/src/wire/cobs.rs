@@ -22,7 +22,6 @@ pub enum CobsByte {
     First,
     /// A code without a zero, or the zero of an empty run.
     Overhead,
-    /// A byte of the content.
     Content,
     /// A code in place of a zero in the content.
     Zero,

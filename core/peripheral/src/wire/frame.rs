@@ -29,9 +29,7 @@ use crate::wire::{
 use alloc::vec::Vec;
 use crc::{CRC_32_ISCSI, Crc};
 
-/// The CRC of frames.
 pub const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
-/// Ends a frame.
 pub const DELIMITER: u8 = 0;
 
 /// Encodes `content` (address, kind, body) with CRC, COBS and delimiter.
@@ -43,15 +41,11 @@ pub fn encode_frame(content: &[u8]) -> Vec<u8> {
     wire
 }
 
-/// Bytes of the CRC.
 pub const CRC_LEN: usize = 4;
 /// Minimum decoded bytes of a frame: address, kind and CRC.
 pub const MIN_DECODED: usize = 2 + CRC_LEN;
-/// Maximum decoded bytes of a frame.
 pub const MAX_DECODED: usize = 600;
-/// Bytes of the status in a reply.
 pub const STATUS_LEN: usize = 9;
-/// Bytes of a position counter in a reply.
 pub const POSITION_LEN: usize = 4;
 /// Bytes of an ACK on the wire, with COBS and delimiter; POSITIONS adds its counters.
 pub const ACK_LEN: usize = MIN_DECODED + STATUS_LEN + 2;
@@ -175,7 +169,6 @@ pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
 /// The body of a TICKS frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ticks<'a> {
-    /// Sequence number.
     pub seq: u8,
     channels: usize,
     commands: &'a [u8],
@@ -227,11 +220,8 @@ pub enum Deframed<'a> {
     Frame(Frame<'a>),
     /// Invalid COBS, or fewer than [`MIN_DECODED`] bytes.
     Short,
-    /// A frame with a wrong CRC.
     BadCrc {
-        /// The received CRC.
         found: u32,
-        /// The CRC of the content.
         expected: u32,
     },
     /// Too long; bytes are dropped up to the next delimiter.

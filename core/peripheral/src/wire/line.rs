@@ -35,7 +35,6 @@ pub struct ForcedLevel {
     pub start: Instant,
     /// The cycle after the last one, later than `start`.
     pub end: Instant,
-    /// The level.
     pub level: bool,
 }
 

@@ -19,7 +19,6 @@ use crate::{
 };
 
 const RIGHT: u8 = 1 << 7;
-/// Maximum steps of a command.
 pub const MAX_STEPS: u8 = RIGHT - 1;
 /// Broadcast address.
 pub const ALL: u8 = 255;
@@ -29,7 +28,6 @@ pub const GAP_BITS: u64 = 45;
 /// One channel's command for one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelCommand {
-    /// Direction: right or left.
     pub right: bool,
     /// Number of steps, 0..=127.
     pub steps: u8,
@@ -54,9 +52,7 @@ pub type Tick = [u8; MAX_CHANNELS];
 /// A complete packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unpacked {
-    /// For this controller.
     Own(Tick),
-    /// For another controller.
     OtherAddress,
 }
 

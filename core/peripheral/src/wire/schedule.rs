@@ -21,7 +21,6 @@ use core::ops::Range;
 pub struct Sent<'a> {
     /// Start bit of the first byte.
     pub start: Instant,
-    /// The bytes.
     pub bytes: &'a [u8],
 }
 

@@ -26,7 +26,6 @@ const STOP: u32 = 9;
 /// What a sample completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RxEvent {
-    /// A byte.
     Byte(u8),
     /// A byte whose stop bit was low.
     FramingError,
