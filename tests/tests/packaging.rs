@@ -1,5 +1,5 @@
-//! What others get who take the library crates: their metadata, what they bring with them, and that whoever reads their
-//! documentation finds an example on every module. `cargo xtask test --only package` packs and builds them.
+//! The library crates as packages: their metadata, their dependencies, and examples in their documentation. `cargo xtask
+//! test --only package` packs and builds them.
 
 use serde_json::Value;
 use std::{
@@ -8,7 +8,7 @@ use std::{
     path::{Path, PathBuf},
     process::Command,
 };
-use syn::{Attribute, Expr, Item, Lit, Meta, Visibility};
+use syn::{Attribute, Expr, Item, ItemUse, Lit, Meta, UseTree, Visibility};
 
 /// The library crates and their folders.
 const LIBRARIES: [(&str, &str); 10] = [
@@ -23,9 +23,9 @@ const LIBRARIES: [(&str, &str); 10] = [
     ("stepscope-inspect", "core/inspect"),
     ("stepscope-core", "core"),
 ];
-const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
+const LICENSES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
-/// What runs on a microcontroller that takes `Device`: all of it.
+/// All crates on a microcontroller that uses `Device`.
 const PERIPHERAL: [&str; 11] = [
     "byteorder",
     "cobs",
@@ -48,14 +48,14 @@ fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// What cargo prints.
+/// The output of cargo.
 fn cargo(arguments: &[&str]) -> String {
     let output = Command::new(env!("CARGO")).current_dir(root()).args(arguments).output().unwrap();
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Names of the crates that a package brings to its target, with itself; what only runs while it is built is none of them.
+/// Names of a package and its dependencies on the target, without those that only the build needs.
 fn tree(package: &str) -> BTreeSet<String> {
     let arguments =
         "tree --locked --offline --edges normal,no-proc-macro --target thumbv7m-none-eabi --prefix none";
@@ -64,7 +64,7 @@ fn tree(package: &str) -> BTreeSet<String> {
     cargo(&arguments).lines().filter_map(|line| Some(line.split(' ').next()?.to_owned())).collect()
 }
 
-/// The workspace's packages, as cargo knows them.
+/// The packages of the workspace, from `cargo metadata`.
 fn packages() -> Vec<Value> {
     let text = cargo(&["metadata", "--locked", "--offline", "--no-deps", "--format-version", "1"]);
     let metadata: Value = serde_json::from_str(&text).unwrap();
@@ -72,7 +72,7 @@ fn packages() -> Vec<Value> {
 }
 
 #[test]
-fn who_takes_the_peripheral_gets_a_handful_of_crates() {
+fn small_crates_have_few_dependencies() {
     assert_eq!(tree("stepscope-registers"), BTreeSet::from(["stepscope-registers".to_owned()]));
     assert_eq!(tree("stepscope-peripheral"), PERIPHERAL.map(str::to_owned).into());
     let motion: Vec<String> =
@@ -80,21 +80,21 @@ fn who_takes_the_peripheral_gets_a_handful_of_crates() {
     assert_eq!(motion, ["libm", "num-bigint", "num-integer", "num-traits", "stepscope-motion"]);
     let plant: Vec<String> =
         tree("stepscope-plant").difference(&tree("stepscope-peripheral")).cloned().collect();
-    assert_eq!(plant, ["stepscope-plant"], "not even libm");
+    assert_eq!(plant, ["stepscope-plant"], "without libm");
     let controller: Vec<String> =
         tree("stepscope-controller").difference(&tree("stepscope-peripheral")).cloned().collect();
-    assert_eq!(controller, ["stepscope-controller"], "whole numbers need no library");
+    assert_eq!(controller, ["stepscope-controller"], "without a library of numbers");
 }
 
 #[test]
-fn the_door_without_features_brings_no_more_than_the_peripheral() {
+fn without_features_the_facade_adds_nothing_to_the_peripheral() {
     let mut expected = tree("stepscope-peripheral");
     expected.insert("stepscope-core".to_owned());
     assert_eq!(tree("stepscope-core"), expected);
 }
 
 #[test]
-fn each_library_says_what_it_is_and_under_which_terms() {
+fn each_library_has_its_metadata_and_licenses() {
     let packages = packages();
     for (name, folder) in LIBRARIES {
         let package = packages.iter().find(|package| package["name"] == name).unwrap();
@@ -105,12 +105,12 @@ fn each_library_says_what_it_is_and_under_which_terms() {
             let count = package[field].as_array().unwrap().len();
             assert!((1..=5).contains(&count), "{name} has {count} {field}; a registry takes 1 to 5");
         }
-        for licence in LICENCES {
-            let own = read(&root().join(folder).join(licence));
-            assert_eq!(own, read(&root().join(licence)), "{folder}/{licence} is not the workspace's");
+        for license in LICENSES {
+            let own = read(&root().join(folder).join(license));
+            assert_eq!(own, read(&root().join(license)), "{folder}/{license} differs from the workspace's");
         }
         for dependency in package["dependencies"].as_array().unwrap() {
-            // Without a version it cannot be packed; those for tests alone are left out of the package.
+            // Packing needs versions, except of dependencies for tests.
             let packed = dependency["kind"].is_null() && dependency["path"].is_string();
             let expected = format!("^{}", package["version"].as_str().unwrap());
             assert!(
@@ -123,7 +123,7 @@ fn each_library_says_what_it_is_and_under_which_terms() {
 }
 
 #[test]
-fn every_example_of_the_door_is_run_by_the_tests() {
+fn the_tests_run_every_example_of_the_facade() {
     let packages = packages();
     let core = packages.iter().find(|package| package["name"] == "stepscope-core").unwrap();
     let targets = core["targets"].as_array().unwrap().iter();
@@ -131,22 +131,17 @@ fn every_example_of_the_door_is_run_by_the_tests() {
     assert_eq!(examples.len(), 4);
     assert!(
         examples.iter().all(|example| example["test"] == true),
-        "an example is built only: {examples:#?}"
+        "an example is built but not run: {examples:#?}"
     );
 }
 
-/// Whether some of the attributes' documentation is an example that is run.
-fn has_example(attributes: &[Attribute], folder: &Path) -> bool {
-    let text: String = attributes.iter().filter_map(|attribute| documentation(attribute, folder)).collect();
-    let mut inside = false;
-    text.lines().map(str::trim).filter(|line| line.starts_with("```")).any(|line| {
-        inside = !inside;
-        inside && matches!(line, "```" | "```rust")
-    })
+/// The documentation in these attributes.
+fn documentation(attributes: &[Attribute], folder: &Path) -> String {
+    attributes.iter().filter_map(|attribute| documentation_of(attribute, folder)).collect()
 }
 
-/// A line of documentation, or the file that stands for it.
-fn documentation(attribute: &Attribute, folder: &Path) -> Option<String> {
+/// A line of documentation, or the file that it includes.
+fn documentation_of(attribute: &Attribute, folder: &Path) -> Option<String> {
     let Meta::NameValue(meta) = &attribute.meta else { return None };
     if !meta.path.is_ident("doc") {
         return None;
@@ -159,38 +154,117 @@ fn documentation(attribute: &Attribute, folder: &Path) -> Option<String> {
     }
 }
 
-/// Public modules in files, from `file` on, without an example and without a unit test.
-fn without_example(file: &Path, missing: &mut Vec<String>) -> usize {
-    let source = syn::parse_file(&read(file)).unwrap();
-    let folder = file.parent().unwrap();
-    let is_crate = file.ends_with("lib.rs");
-    let is_tests = |item: &Item| matches!(item, Item::Mod(module) if module.ident == "tests");
-    // Within a crate, a unit test of the module is an example that runs, too.
-    if !has_example(&source.attrs, folder) && (is_crate || !source.items.iter().any(is_tests)) {
-        missing.push(file.strip_prefix(root()).unwrap().display().to_string());
-    }
-    let stem = file.file_stem().unwrap();
-    let below = if stem == "lib" || stem == "mod" { folder.to_owned() } else { folder.join(stem) };
-    let mut count = 1;
-    for item in &source.items {
-        if let Item::Mod(module) = item
-            && module.content.is_none()
-            && matches!(module.vis, Visibility::Public(_))
-        {
-            let name = module.ident.to_string();
-            let files = [below.join(format!("{name}.rs")), below.join(&name).join("mod.rs")];
-            count += without_example(files.iter().find(|file| file.exists()).unwrap(), missing);
+/// Code of the examples that `cargo test` runs, without the marks of hidden lines.
+fn run_examples(documentation: &str) -> String {
+    let (mut code, mut block) = (String::new(), None);
+    for line in documentation.lines().map(str::trim) {
+        if let Some(language) = line.strip_prefix("```") {
+            block = if block.is_some() { None } else { Some(matches!(language, "" | "rust")) };
+        } else if block == Some(true) {
+            code.push_str(line.strip_prefix("# ").unwrap_or(line));
+            code.push('\n');
         }
     }
-    count
+    code
 }
 
-#[test]
-fn every_public_module_has_an_example_that_is_run() {
-    let (mut missing, mut count) = (Vec::new(), 0);
-    for (_, folder) in LIBRARIES {
-        count += without_example(&root().join(folder).join("src").join("lib.rs"), &mut missing);
+/// A public module: its path within the crate, and its documentation.
+struct Module {
+    path: String,
+    documentation: String,
+}
+
+/// The public modules of a crate in files, the first page first, and the paths that the first page re-exports.
+fn modules(folder: &str) -> (Vec<Module>, Vec<String>) {
+    let (mut found, mut exported) = (Vec::new(), Vec::new());
+    let mut queue = vec![(String::new(), root().join(folder).join("src").join("lib.rs"))];
+    while let Some((path, file)) = queue.pop() {
+        let source = syn::parse_file(&read(&file)).unwrap();
+        let (parent, stem) = (file.parent().unwrap(), file.file_stem().unwrap());
+        let below = if stem == "lib" || stem == "mod" { parent.to_owned() } else { parent.join(stem) };
+        for item in &source.items {
+            match item {
+                Item::Mod(module) if module.content.is_none() && is_public(&module.vis) => {
+                    let name = module.ident.to_string();
+                    let files = [below.join(format!("{name}.rs")), below.join(&name).join("mod.rs")];
+                    let file = files.into_iter().find(|file| file.exists()).unwrap();
+                    queue.push((format!("{path}::{name}").trim_start_matches("::").to_owned(), file));
+                }
+                Item::Use(item) if path.is_empty() && is_public(&item.vis) => {
+                    exported.extend(paths("", &item.tree));
+                }
+                _ => {}
+            }
+        }
+        found.push(Module { path, documentation: documentation(&source.attrs, parent) });
     }
-    assert!(count > 60, "only {count} modules were found");
-    assert!(missing.is_empty(), "give these a short example at their head, or a unit test: {missing:#?}");
+    (found, exported)
+}
+
+fn is_public(visibility: &Visibility) -> bool {
+    matches!(visibility, Visibility::Public(_))
+}
+
+/// All paths of a `use`.
+fn paths(before: &str, tree: &UseTree) -> Vec<String> {
+    match tree {
+        UseTree::Path(path) => paths(&format!("{before}{}::", path.ident), &path.tree),
+        UseTree::Group(group) => group.items.iter().flat_map(|tree| paths(before, tree)).collect(),
+        UseTree::Name(name) => vec![format!("{before}{}", name.ident)],
+        UseTree::Rename(name) => vec![format!("{before}{}", name.ident)],
+        UseTree::Glob(_) => vec![before.trim_end_matches("::").to_owned()],
+    }
+}
+
+/// The paths that a first page links to, or that its examples use.
+fn referenced(documentation: &str) -> Vec<String> {
+    let between = |begin: &str, end: &str| -> Vec<String> {
+        let starts = documentation.split(begin).skip(1);
+        starts.filter_map(|rest| rest.split_once(end)).map(|(path, _)| path.to_owned()).collect()
+    };
+    let mut found = [between("[`", "`]"), between("](", ")")].concat();
+    let code = run_examples(documentation);
+    for import in code.split("use ").skip(1).filter_map(|rest| rest.split_once(';')) {
+        if let Ok(item) = syn::parse_str::<ItemUse>(&format!("use {};", import.0)) {
+            found.extend(paths("", &item.tree));
+        }
+    }
+    found
+}
+
+/// A library user starts on a crate's first page, and goes on to the modules that it links to, re-exports from, or
+/// uses in its examples. The first page of `stepscope-core` leads to the modules of all crates.
+#[test]
+fn first_pages_and_the_modules_that_they_lead_to_have_an_example_that_is_run() {
+    let (mut missing, mut required) = (Vec::new(), 0);
+    let facade = modules("core").0.remove(0).documentation;
+    for (name, folder) in LIBRARIES {
+        let (modules, exported) = modules(folder);
+        let (crate_name, room) = (name.replace('-', "_"), name.trim_start_matches("stepscope-"));
+        let own = referenced(&modules[0].documentation).into_iter().map(|path| {
+            let path = path.trim_start_matches("crate::");
+            path.strip_prefix(&format!("{crate_name}::")).unwrap_or(path).to_owned()
+        });
+        let of_facade = referenced(&facade).into_iter().filter_map(|path| {
+            let path = path.strip_prefix("stepscope_core::").unwrap_or(&path);
+            path.strip_prefix(&format!("{room}::")).map(str::to_owned)
+        });
+        let paths: Vec<String> = own.chain(of_facade).chain(exported).collect();
+        for module in &modules {
+            let is_target = |path: &String| {
+                let within =
+                    |module: &Module| path == &module.path || path.starts_with(&format!("{}::", module.path));
+                let innermost = modules.iter().filter(|one| within(one)).max_by_key(|one| one.path.len());
+                innermost.is_some_and(|one| one.path == module.path)
+            };
+            if module.path.is_empty() || paths.iter().any(is_target) {
+                required += 1;
+                if run_examples(&module.documentation).is_empty() {
+                    missing.push(format!("{name}: {}", module.path));
+                }
+            }
+        }
+    }
+    assert!(required > 30, "only {required} modules are required");
+    assert!(missing.is_empty(), "add a short example to the header of: {missing:#?}");
 }
