@@ -5,7 +5,8 @@
 //!
 //! # Run a scenario
 //!
-//! A scenario is JSON; every field has a default. The digest identifies its trace.
+//! A scenario is JSON; every field has a default. A run returns every edge with its cycle, and a digest that identifies
+//! them all.
 //!
 //! ```
 //! # #[cfg(feature = "inspect")] {
@@ -17,7 +18,7 @@
 //!     r#"{ "source": { "motion": { "axes": [ { "moves": [
 //!         { "cosine": { "distance": { "deg": 360 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }"#,
 //! )
-//! .expect("it has no problems");
+//! .expect("a valid scenario");
 //! let mut recording = Recording::default(); // or any Sink: a digest, a file, a check
 //! let run = experiment.run(&mut recording);
 //!
@@ -31,7 +32,9 @@
 //! # }
 //! ```
 //!
-//! # Compute step times
+//! # Get step times
+//!
+//! A plan has the exact time of each step; here in cycles of a clock of 16 MHz.
 //!
 //! ```
 //! # #[cfg(feature = "sim")] {
@@ -42,7 +45,9 @@
 //! # }
 //! ```
 //!
-//! # Compare your own edges with a plan
+//! # Compare with your own edges
+//!
+//! The plan's steps and yours are matched; the result counts missing, additional and late ones.
 //!
 //! ```
 //! # #[cfg(all(feature = "inspect", feature = "std"))] {
@@ -51,16 +56,17 @@
 //! # let mut recording = Recording::default();
 //! # Experiment::from_json("{}").expect("the default motion").run(&mut recording);
 //! # let plan = steps(&recording.trace, 0);
-//! # let mut own = plan.clone();
-//! # own.remove(2000);
+//! // Your steps: here those of the plan, one of them missing.
+//! let mut own = plan.clone();
+//! own.remove(2000);
 //! let side = |steps| Side { steps, clock_hz: 16_000_000, values: &[] };
 //! let found = Alignment::of(side(&own), side(&plan), None).expect("both have steps");
 //! let compared = found.comparison(Tolerance::ZERO);
-//! assert_eq!((compared.missing, compared.extra), (1, 0)); // one step is lost
+//! assert_eq!((compared.missing, compared.extra), (1, 0));
 //! # }
 //! ```
 //!
-//! `capture` reads your own edges from files of logic analyzers.
+//! `capture` reads your edges from files of logic analyzers.
 //!
 //! # Test firmware
 //!

@@ -1,4 +1,12 @@
 //! The contents of a recorded file.
+//!
+//! ```
+//! use stepscope_capture::read::{Limits, read};
+//!
+//! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0!";
+//! let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
+//! assert_eq!((capture.channels[0].name.as_str(), capture.bytes.len()), ("STEP", 0));
+//! ```
 
 pub use crate::changes::Change;
 

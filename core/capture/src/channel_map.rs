@@ -7,6 +7,15 @@
 //! CW0=CH1,CCW0=CH2               one pulse input per direction
 //! A0=CH1,B0=CH2                  a quadrature encoder: one count per edge
 //! ```
+//!
+//! ```
+//! use stepscope_capture::{ChannelMap, read::{Limits, read}};
+//!
+//! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0!";
+//! let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
+//! let map = ChannelMap::parse("STEP0=#0", &capture).expect("there is a first channel");
+//! assert_eq!((map.entries().len(), map.entries()[0].channel), (1, 0));
+//! ```
 
 use crate::capture::{Capture, Channel};
 use core::fmt;

@@ -2,6 +2,16 @@
 //!
 //! Times are rounded to the nearest cycle, halves up. With a slow clock, changes may share a cycle and pulses may be
 //! lost; both are counted.
+//!
+//! ```
+//! use stepscope_capture::{ChannelMap, RecordedSignals, read::{Limits, read}};
+//!
+//! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0!";
+//! let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
+//! let (map, timebase) = (ChannelMap::proposed(&capture), capture.timebase.expect("the dump has a time scale"));
+//! let signals = RecordedSignals::new(capture, &map, timebase, 16_000_000).expect("the recording is short");
+//! assert_eq!(signals.records[1].cycle.0, 160);
+//! ```
 
 use crate::{
     capture::{Capture, Change},

@@ -6,6 +6,14 @@
 //!
 //! A file is read once, front to back (a sigrok session by its directory at the end). Needs memory for the changes
 //! plus less than 4 MB.
+//!
+//! ```
+//! use stepscope_capture::read::{Limits, read};
+//!
+//! let dump = "$timescale 1 us $end $var wire 1 ! STEP $end $enddefinitions $end #0 0! #10 1! #12 0!";
+//! let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
+//! assert_eq!(capture.changes.iter().nth(1).map(|change| change.tick), Some(10));
+//! ```
 
 pub mod decimal;
 

@@ -7,6 +7,20 @@
 //! ```
 //!
 //! Clocks differ by tens of ppm, so drift and jitter are separate. Outliers affect neither drift nor RMS jitter.
+//!
+//! ```
+//! use stepscope_inspect::recording::{alignment::{Alignment, Side}, tolerance::Tolerance};
+//! # use stepscope_inspect::trace::stored_run::Recording;
+//! # let mut recording = Recording::default();
+//! # stepscope_sim::Experiment::from_json("{}").expect("the default motion").run(&mut recording);
+//! # let plan = stepscope_peripheral::trace::steps(&recording.trace, 0);
+//! // The recorded steps are those of the plan without one.
+//! let mut recorded = plan.clone();
+//! recorded.remove(2000);
+//! let side = |steps| Side { steps, clock_hz: 16_000_000, values: &[] };
+//! let found = Alignment::of(side(&recorded), side(&plan), None).expect("both have steps");
+//! assert_eq!(found.comparison(Tolerance::ZERO).missing, 1);
+//! ```
 
 use super::{drift::Drift, matching::Matching, tolerance::Tolerance};
 use serde::Serialize;

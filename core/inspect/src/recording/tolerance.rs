@@ -1,4 +1,11 @@
 //! An exact tolerance, so that a step off by exactly that time is accepted.
+//!
+//! ```
+//! use stepscope_inspect::recording::tolerance::Tolerance;
+//!
+//! let tolerance = Tolerance::from_micros(25, 1).expect("2.5 us");
+//! assert_eq!(tolerance.seconds(), 2.5e-6);
+//! ```
 
 use serde::{Serialize, Serializer};
 

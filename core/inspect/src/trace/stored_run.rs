@@ -1,4 +1,13 @@
 //! A run in memory, as the views need it: records, digest and packets.
+//!
+//! ```
+//! use stepscope_inspect::trace::stored_run::Recording;
+//! use stepscope_sim::Experiment;
+//!
+//! let mut recording = Recording::default();
+//! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
+//! assert_eq!(recording.digest.records(), recording.trace.len() as u64);
+//! ```
 
 use crate::packets::log::PacketLog;
 use alloc::vec::Vec;
