@@ -92,7 +92,7 @@ function panelItem(kit, all, index) {
     [
       head,
       ...kit.block(at, basicFields),
-      kit.part(`Self-test, debounce, trust${suffix}`, false, kit.block(at, otherFields)),
+      kit.part(`Self-test, debounce, position${suffix}`, false, kit.block(at, otherFields)),
       ...programItems(kit, at, panel.groups ?? [], suffix),
       part("jog", "Jog"),
       part("return", "ReturnToZero"),

@@ -19,7 +19,7 @@ use stepscope_peripheral::{
     wire::{ForcedLevel, schedule::line_time},
 };
 
-/// Maximum bytes of a line script, and maximum packets of a packet list.
+/// Maximum bytes of a line script, or of all packets.
 const MAX_BYTES: usize = 4 << 20;
 
 /// A valid scenario. Its motions are checked when they are planned.

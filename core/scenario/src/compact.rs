@@ -29,7 +29,7 @@ pub(super) enum Fields {
 
 pub(super) fn value_of(parts: Parts<'_>, which: Fields) -> Value {
     match parts {
-        Parts::Whole(value) => value,
+        Parts::Value(value) => value,
         // -0.0 equals 0.0 and is written the same.
         Parts::Number(number) => Value::from(number + 0.0),
         Parts::List(entries) => entries.into_iter().map(|entry| value_of(entry.parts(), which)).collect(),
@@ -51,9 +51,9 @@ pub(super) fn value_of(parts: Parts<'_>, which: Fields) -> Value {
 }
 
 /// Writes all fields like `serde_json::to_string_pretty`, starting at depth `indent`. Stops when the text exceeds
-/// `most` bytes.
-pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize, most: usize) {
-    if out.len() > most {
+/// `max_bytes` bytes.
+pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize, max_bytes: usize) {
+    if out.len() > max_bytes {
         return;
     }
     let begin_line = |out: &mut String, first: bool| {
@@ -62,10 +62,10 @@ pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize, 
     };
     let named = |out: &mut String, name: &str, value: &dyn ToParts| {
         out.push_str(&alloc::format!("\"{name}\": "));
-        write_whole(out, value, indent + 1, most);
+        write_whole(out, value, indent + 1, max_bytes);
     };
     let brackets = match value.parts() {
-        Parts::Whole(value) => return out.push_str(&value.to_string()),
+        Parts::Value(value) => return out.push_str(&value.to_string()),
         Parts::Number(number) => return out.push_str(&Value::from(number).to_string()),
         Parts::List(entries) if entries.is_empty() => return out.push_str("[]"),
         Parts::Fields(_, values) if values.is_empty() => return out.push_str("{}"),
@@ -73,7 +73,7 @@ pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize, 
             out.push('[');
             for (index, entry) in entries.into_iter().enumerate() {
                 begin_line(out, index == 0);
-                write_whole(out, entry, indent + 1, most);
+                write_whole(out, entry, indent + 1, max_bytes);
             }
             ']'
         }
@@ -103,22 +103,22 @@ pub(super) fn write_whole(out: &mut String, value: &dyn ToParts, indent: usize, 
 const VERSION: &str = "version";
 
 /// Writes without defaults and indentation: one list entry per line, numbers in a row. Stops when the text exceeds
-/// `most` bytes.
-pub(super) fn write_short(out: &mut String, value: &dyn ToParts, most: usize) {
-    if out.len() > most {
+/// `max_bytes` bytes.
+pub(super) fn write_short(out: &mut String, value: &dyn ToParts, max_bytes: usize) {
+    if out.len() > max_bytes {
         return;
     }
     match value.parts() {
-        Parts::Whole(value) => out.push_str(&value.to_string()),
+        Parts::Value(value) => out.push_str(&value.to_string()),
         Parts::Number(number) => out.push_str(&Value::from(number + 0.0).to_string()),
         Parts::List(entries) => {
-            let is_plain = |entry: &&dyn ToParts| matches!(entry.parts(), Parts::Whole(_) | Parts::Number(_));
+            let is_plain = |entry: &&dyn ToParts| matches!(entry.parts(), Parts::Value(_) | Parts::Number(_));
             let between = if entries.first().is_none_or(is_plain) { "" } else { "\n" };
             out.push('[');
             for (index, entry) in entries.into_iter().enumerate() {
                 out.push_str(if index == 0 { "" } else { "," });
                 out.push_str(between);
-                write_short(out, entry, most);
+                write_short(out, entry, max_bytes);
             }
             out.push_str(between);
             out.push(']');
@@ -130,13 +130,13 @@ pub(super) fn write_short(out: &mut String, value: &dyn ToParts, most: usize) {
             for (index, (field, (value, _))) in written.enumerate() {
                 out.push_str(if index == 0 { "" } else { "," });
                 out.push_str(&alloc::format!("\"{}\":", field.name));
-                write_short(out, value, most);
+                write_short(out, value, max_bytes);
             }
             out.push('}');
         }
         Parts::Kind(name, value) => {
             out.push_str(&alloc::format!("{{\"{name}\":"));
-            write_short(out, value, most);
+            write_short(out, value, max_bytes);
             out.push('}');
         }
     }
@@ -146,7 +146,7 @@ macro_rules! plain {
     ($($ty:ty),*) => {$(
         impl ToParts for $ty {
             fn parts(&self) -> Parts<'_> {
-                Parts::Whole(Value::from(self.clone()))
+                Parts::Value(Value::from(self.clone()))
             }
         }
     )*};
@@ -162,7 +162,7 @@ impl ToParts for f64 {
 
 impl<T: ToParts> ToParts for Option<T> {
     fn parts(&self) -> Parts<'_> {
-        self.as_ref().map_or(Parts::Whole(Value::Null), ToParts::parts)
+        self.as_ref().map_or(Parts::Value(Value::Null), ToParts::parts)
     }
 }
 

@@ -12,14 +12,14 @@ pub struct Hex(pub Vec<u8>);
 impl Read for Hex {
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
         let Some(text) = value.text() else {
-            return reader.refuse(value, "bytes in hex, such as \"80 01 7f\"");
+            return reader.reject_type(value, "bytes in hex, such as \"80 01 7f\"");
         };
         match Self::of_text(&text) {
             Ok(bytes) => {
                 *self = bytes;
                 true
             }
-            Err(wrong) => reader.wrong(wrong),
+            Err(wrong) => reader.reject(wrong),
         }
     }
 
@@ -48,7 +48,7 @@ fn wrong_in(digits: &str) -> String {
 
 impl crate::schema::ToParts for Hex {
     fn parts(&self) -> crate::schema::Parts<'_> {
-        crate::schema::Parts::Whole(Value::from(lower::encode_string(&self.0)))
+        crate::schema::Parts::Value(Value::from(lower::encode_string(&self.0)))
     }
 }
 

@@ -23,12 +23,12 @@ impl<'t> Json<'t> {
         serde_json::from_str(text).map(Self)
     }
 
-    pub(crate) fn written(self) -> &'t str {
+    pub(crate) fn raw(self) -> &'t str {
         self.0.get()
     }
 
     fn begins_with(self, mark: char) -> bool {
-        self.written().starts_with(mark)
+        self.raw().starts_with(mark)
     }
 
     pub(crate) fn is_null(self) -> bool {
@@ -45,36 +45,36 @@ impl<'t> Json<'t> {
 
     /// `None` for half of a surrogate pair.
     pub(crate) fn text(self) -> Option<Cow<'t, str>> {
-        let text = self.begins_with('"').then(|| serde_json::from_str::<Text<'_>>(self.written()));
+        let text = self.begins_with('"').then(|| serde_json::from_str::<Text<'_>>(self.raw()));
         text?.ok().map(|Text(text)| text)
     }
 
     /// `None` for infinity.
     pub(crate) fn number(self) -> Option<f64> {
-        serde_json::from_str(self.written()).ok()
+        serde_json::from_str(self.raw()).ok()
     }
 
     /// Sign and magnitude of a whole number, `16000000.0` and `16e6` included.
     pub(crate) fn whole(self) -> Option<(bool, u64)> {
-        let written = self.written();
-        let size = written.strip_prefix('-').unwrap_or(written);
-        let below = size.len() < written.len();
-        if let Ok(size) = size.parse::<u64>() {
-            return Some((below && size > 0, size));
+        let raw = self.raw();
+        let magnitude = raw.strip_prefix('-').unwrap_or(raw);
+        let is_negative = magnitude.len() < raw.len();
+        if let Ok(magnitude) = magnitude.parse::<u64>() {
+            return Some((is_negative && magnitude > 0, magnitude));
         }
         let number = self.number()?;
-        let size = number.abs() as u64;
-        (number.abs() <= MAX_EXACT && size as f64 == number.abs()).then_some((number < 0.0, size))
+        let magnitude = number.abs() as u64;
+        (number.abs() <= MAX_EXACT && magnitude as f64 == number.abs()).then_some((number < 0.0, magnitude))
     }
 
     /// False if it is no map or a name is no text.
     pub(crate) fn members(self, each: &mut dyn FnMut(&str, Json<'t>)) -> bool {
-        Deserializer::from_str(self.written()).deserialize_map(Members(each)).is_ok()
+        Deserializer::from_str(self.raw()).deserialize_map(Members(each)).is_ok()
     }
 
     /// False if it is no list.
     pub(crate) fn entries(self, each: &mut dyn FnMut(Json<'t>)) -> bool {
-        self.is_list() && Deserializer::from_str(self.written()).deserialize_seq(Entries(each)).is_ok()
+        self.is_list() && Deserializer::from_str(self.raw()).deserialize_seq(Entries(each)).is_ok()
     }
 
     pub(crate) fn list(self) -> Option<Vec<Json<'t>>> {
@@ -175,7 +175,7 @@ mod tests {
     fn every_name_is_seen_in_its_order_also_twice() {
         let json = Json::parse(r#" { "b": [1, {"x": "]"}], "a" : null, "b": "\u0041\"" } "#).expect("JSON");
         let mut seen = String::new();
-        assert!(json.members(&mut |name, value| seen += &format!("{name}={};", value.written())));
+        assert!(json.members(&mut |name, value| seen += &format!("{name}={};", value.raw())));
         assert_eq!(seen, r#"b=[1, {"x": "]"}];a=null;b="\u0041\"";"#);
         assert!(!Json::parse("[]").expect("JSON").members(&mut |_, _| {}));
         assert!(!Json::parse("{}").expect("JSON").entries(&mut |_| {}));

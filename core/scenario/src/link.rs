@@ -27,7 +27,7 @@ pub const MAX_FRAGMENT_BYTES: usize = 16 << 10;
 pub const MAX_JSON_BYTES: usize = 64 << 10;
 /// miniz_oxide's strongest level. Fixed, so that a scenario's link never changes.
 const DEFLATE_LEVEL: u8 = 10;
-const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+const CRC_32: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 /// Maximum problems in one message.
 const MAX_LISTED: usize = 8;
 /// Punctuation that a chat program or a sentence may add to a link.
@@ -109,7 +109,7 @@ pub fn pack(json: &str) -> Result<String, LinkError> {
     let (codec, payload) =
         if deflated.len() < json.len() { ('z', deflated.as_slice()) } else { ('j', json.as_bytes()) };
     let text = format!("{VERSION}.{codec}.{}", Base64UrlUnpadded::encode_string(payload));
-    let link = format!("c={text}.{:08x}", CHECK.checksum(text.as_bytes()));
+    let link = format!("c={text}.{:08x}", CRC_32.checksum(text.as_bytes()));
     if link.len() > MAX_FRAGMENT_BYTES {
         return Err(LinkError::TooLong { given: link.len(), most: MAX_FRAGMENT_BYTES });
     }
@@ -162,7 +162,7 @@ pub fn unpack(fragment: &str) -> Result<Packed, LinkError> {
         return Err(LinkError::Newer { given: version, newest: VERSION });
     }
     let (checked, check) = text.rsplit_once('.').ok_or(LinkError::Damaged)?;
-    if check != format!("{:08x}", CHECK.checksum(checked.as_bytes())) {
+    if check != format!("{:08x}", CRC_32.checksum(checked.as_bytes())) {
         return Err(LinkError::Damaged);
     }
     let (codec, payload) =
@@ -312,7 +312,7 @@ mod tests {
 
     fn link_of(codec: char, payload: &[u8]) -> String {
         let text = format!("{VERSION}.{codec}.{}", Base64UrlUnpadded::encode_string(payload));
-        format!("c={text}.{:08x}", CHECK.checksum(text.as_bytes()))
+        format!("c={text}.{:08x}", CRC_32.checksum(text.as_bytes()))
     }
 
     #[test]

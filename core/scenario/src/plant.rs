@@ -26,7 +26,7 @@ pub struct Plants {
     pub tail: Cycles,
 }
 
-/// A motor with the paths of its fields and its mechanics.
+/// The motor of a channel, with the paths of its fields and its mechanics. `None` is the default motor.
 struct MotorAtPath<'a> {
     motor: Option<&'a Motor>,
     full_step_deg: f64,
@@ -44,11 +44,11 @@ impl Scenario {
             return None;
         }
         let setups = configs.iter().enumerate().map(|(index, config)| {
-            let placed = self.motors(settings, index, config.channels());
-            one_supply(&placed, validator);
-            let setup = setup(self.clock_hz, settings, &placed);
+            let motors = self.motors(settings, index, config.channels());
+            check_one_supply(&motors, validator);
+            let setup = setup(self.clock_hz, settings, &motors);
             for refused in Plant::new(&setup).err().unwrap_or_default() {
-                report(refused, &placed, validator);
+                add_refusal(refused, &motors, validator);
             }
             setup
         });
@@ -190,11 +190,11 @@ fn check_motor(motor: &Motor, here: &mut Validator) {
 }
 
 /// All motors of a plant share one supply.
-fn one_supply(placed: &[MotorAtPath<'_>], validator: &mut Validator) {
+fn check_one_supply(motors: &[MotorAtPath<'_>], validator: &mut Validator) {
     let supply =
-        |placed: &MotorAtPath<'_>| placed.motor.map_or(Motor::default().supply_v, |motor| motor.supply_v);
-    let Some(first) = placed.first().map(supply) else { return };
-    for other in placed {
+        |motor: &MotorAtPath<'_>| motor.motor.map_or(Motor::default().supply_v, |motor| motor.supply_v);
+    let Some(first) = motors.first().map(supply) else { return };
+    for other in motors {
         let path = format!("{}.supply_v", other.path);
         if supply(other).to_bits() != first.to_bits() && !validator.has_problem(&path) {
             validator.add(&path, Cause::OtherSupply { supply_v: supply(other), first_v: first });
@@ -202,10 +202,10 @@ fn one_supply(placed: &[MotorAtPath<'_>], validator: &mut Validator) {
     }
 }
 
-fn setup(clock_hz: u32, settings: &PlantSettings, placed: &[MotorAtPath<'_>]) -> parameters::Setup {
+fn setup(clock_hz: u32, settings: &PlantSettings, motors: &[MotorAtPath<'_>]) -> parameters::Setup {
     let default = Motor::default();
     let supply_v =
-        placed.first().and_then(|first| first.motor).map_or(default.supply_v, |motor| motor.supply_v);
+        motors.first().and_then(|first| first.motor).map_or(default.supply_v, |motor| motor.supply_v);
     let (sensor, encoder) = (&settings.current_sensor, &settings.encoder);
     parameters::Setup {
         clock_hz,
@@ -236,15 +236,15 @@ fn setup(clock_hz: u32, settings: &PlantSettings, placed: &[MotorAtPath<'_>]) ->
             threshold_a: protection.threshold_a,
             samples: protection.samples,
         }),
-        motors: placed.iter().map(|placed| motor(placed, placed.motor.unwrap_or(&default))).collect(),
+        motors: motors.iter().map(|each| motor(each, each.motor.unwrap_or(&default))).collect(),
     }
 }
 
-fn motor(placed: &MotorAtPath<'_>, motor: &Motor) -> parameters::MotorModel {
+fn motor(channel: &MotorAtPath<'_>, motor: &Motor) -> parameters::MotorModel {
     let drive = &motor.drive;
     parameters::MotorModel {
-        full_step_deg: placed.full_step_deg,
-        microsteps: placed.microsteps,
+        full_step_deg: channel.full_step_deg,
+        microsteps: channel.microsteps,
         rated_current_a: motor.rated_current_a,
         peak_current_a: motor.peak_current_a.unwrap_or(motor.rated_current_a),
         resistance_ohm: motor.resistance_ohm,
@@ -292,17 +292,17 @@ fn scenario_name(field: &'static str) -> &'static str {
     }
 }
 
-fn report(refused: Refused, placed: &[MotorAtPath<'_>], validator: &mut Validator) {
-    let of_motor = refused.channel.and_then(|channel| placed.get(channel));
+fn add_refusal(refused: Refused, motors: &[MotorAtPath<'_>], validator: &mut Validator) {
+    let of_motor = refused.channel.and_then(|channel| motors.get(channel));
     let path = match (refused.refusal, of_motor) {
         (Refusal::Unstable { .. }, _) => "plant.step_cycles".into(),
         (Refusal::TooWeak { .. }, _) => "plant.source_ohm".into(),
-        (Refusal::Range { field: field @ ("full_step_deg" | "microsteps"), .. }, Some(placed)) => {
-            format!("{}.{field}", placed.mechanics_path)
+        (Refusal::Range { field: field @ ("full_step_deg" | "microsteps"), .. }, Some(motor)) => {
+            format!("{}.{field}", motor.mechanics_path)
         }
-        (Refusal::Range { field, .. }, Some(placed)) => format!("{}.{}", placed.path, scenario_name(field)),
+        (Refusal::Range { field, .. }, Some(motor)) => format!("{}.{}", motor.path, scenario_name(field)),
         (Refusal::Range { field: "supply_v", .. }, None) => {
-            placed.first().map_or_else(String::new, |first| format!("{}.supply_v", first.path))
+            motors.first().map_or_else(String::new, |first| format!("{}.supply_v", first.path))
         }
         (Refusal::Range { field, .. }, None) => format!("plant.{field}"),
     };
@@ -354,7 +354,7 @@ mod tests {
             ),
             (
                 motor(r#""inductance_mh":0.02"#),
-                &["plant.step_cycles: motor 0: R*h/L is 0.400 at grid steps of 80 cycles; at most 0.25"],
+                &["plant.step_cycles: motor 0: R*h/L is 0.400 at grid steps of 80 cycles"],
             ),
             (
                 r#"{"plant":{"buffer_uf":100,"source_ohm":50}}"#.into(),

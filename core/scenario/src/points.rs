@@ -9,13 +9,13 @@ use stepscope_motion::moves::{MAX_POINTS, Point};
 
 impl Read for Point {
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
-        let wanted = "a point's time in s and its position, such as [0.25, 12.5]";
-        let Some(numbers) = value.list() else { return reader.refuse(value, wanted) };
+        let expected = "a point's time in s and its position, such as [0.25, 12.5]";
+        let Some(numbers) = value.list() else { return reader.reject_type(value, expected) };
         let [time_s, position] = &numbers[..] else {
-            return reader.wrong(format!("a point with {} numbers; use {wanted}", numbers.len()));
+            return reader.reject(format!("a point with {} numbers; use {expected}", numbers.len()));
         };
-        reader.entry(0, *time_s, &mut self.time_s);
-        reader.entry(1, *position, &mut self.position);
+        reader.read_entry(0, *time_s, &mut self.time_s);
+        reader.read_entry(1, *position, &mut self.position);
         true
     }
 
@@ -47,7 +47,7 @@ pub fn points_of_table(table: &str) -> Result<Vec<Point>, BadTable> {
     };
     let mut rows = Rows::new(table, separator)?;
     let (mut points, mut columns, mut is_first) = (Vec::new(), (0, 1), true);
-    while let Some((at, row)) = rows.next() {
+    while let Some((position, row)) = rows.next() {
         let header = core::mem::take(&mut is_first) && row.iter().all(|field| number(field).is_none());
         if header {
             let column = |name: &str| row.iter().position(|field| field.trim().eq_ignore_ascii_case(name));
@@ -58,16 +58,21 @@ pub fn points_of_table(table: &str) -> Result<Vec<Point>, BadTable> {
             let text = row.get(column).map_or("", |field| field.trim());
             number(text).ok_or_else(|| {
                 let given: String = short(text);
-                rows.bad(at, format!("the {what} is \u{201c}{given}\u{201d}; use a number, such as 0.25"))
+                rows.error_at(
+                    position,
+                    format!("the {what} is \u{201c}{given}\u{201d}; use a number, such as 0.25"),
+                )
             })
         };
         points.push(Point { time_s: read(columns.0, "time in s")?, position: read(columns.1, "position")? });
         if points.len() > MAX_POINTS {
-            return Err(rows.bad(at, format!("more than {MAX_POINTS} points; use at most {MAX_POINTS}")));
+            return Err(
+                rows.error_at(position, format!("more than {MAX_POINTS} points; use at most {MAX_POINTS}"))
+            );
         }
     }
     if points.len() < 2 {
-        return Err(rows.bad(rows.at, format!("{} points; use 2 to {MAX_POINTS}", points.len())));
+        return Err(rows.error_at(rows.position, format!("{} points; use 2 to {MAX_POINTS}", points.len())));
     }
     Ok(points)
 }

@@ -21,7 +21,7 @@ impl Scenario {
     /// # Errors
     /// Every unknown or duplicate field and every wrong type. [`Scenario::check`] checks ranges.
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
-        strictly(read(text, None))
+        without_problems(read(text, None))
     }
 
     /// Reads a scenario whose version is known from elsewhere, such as a link.
@@ -29,7 +29,7 @@ impl Scenario {
     /// # Errors
     /// As [`Self::from_json`].
     pub fn from_json_of(text: &str, version: u64) -> Result<Self, Vec<Problem>> {
-        strictly(read(text, Some(version)))
+        without_problems(read(text, Some(version)))
     }
 
     /// Reads as much as possible; unreadable fields get their defaults.
@@ -68,7 +68,7 @@ impl Scenario {
     }
 }
 
-fn strictly((scenario, problems): (Scenario, Vec<Problem>)) -> Result<Scenario, Vec<Problem>> {
+fn without_problems((scenario, problems): (Scenario, Vec<Problem>)) -> Result<Scenario, Vec<Problem>> {
     if problems.is_empty() { Ok(scenario) } else { Err(problems) }
 }
 
@@ -100,8 +100,8 @@ fn parse(text: &str) -> Result<Json<'_>, Vec<Problem>> {
     })
 }
 
-/// `None` if it cannot be read. Without a version, names of any version are accepted.
-fn version(value: Json<'_>) -> Option<u64> {
+/// The version in the text; `None` if it cannot be read.
+fn given_version(value: Json<'_>) -> Option<u64> {
     let mut given = None;
     if value.is_map() {
         value.members(&mut |name, value| {
@@ -123,7 +123,7 @@ fn read(text: &str, known: Option<u64>) -> (Scenario, Vec<Problem>) {
         Ok(value) => value,
         Err(problems) => return (Scenario::default(), problems),
     };
-    let given = known.or_else(|| version(value));
+    let given = known.or_else(|| given_version(value));
     if let Some(given) = given.filter(|given| *given > u64::from(VERSION)) {
         let newer = Problem::new("version", Cause::NewerVersion { given, newest: VERSION });
         return (Scenario::default(), alloc::vec![newer]);

@@ -52,19 +52,19 @@ impl Reader {
     }
 
     /// Reports a wrong type; always returns false.
-    pub(super) fn refuse(&mut self, value: Json<'_>, wanted: &str) -> bool {
-        self.note(format!("{}; use {wanted}", describe(value)));
+    pub(super) fn reject_type(&mut self, value: Json<'_>, expected: &str) -> bool {
+        self.note(format!("{}; use {expected}", describe(value)));
         false
     }
 
     /// Reports a wrong value; always returns false.
-    pub(super) fn wrong(&mut self, detail: String) -> bool {
+    pub(super) fn reject(&mut self, detail: String) -> bool {
         self.note(detail);
         false
     }
 
     /// Reports the field's own range, if it has one.
-    fn refuse_number(
+    fn reject_number(
         &mut self,
         value: Json<'_>,
         kind: &str,
@@ -72,60 +72,60 @@ impl Reader {
     ) -> bool {
         let row = self.row.filter(|row| !row.unit.is_empty());
         let unit = row.map_or_else(String::new, |row| format!(" {}", row.unit));
-        let of_type = || range.map_or_else(String::new, |(least, most)| format!(" from {least} to {most}"));
+        let of_type = || range.map_or_else(String::new, |(min, max)| format!(" from {min} to {max}"));
         let range = match self.row.map(|row| row.limit) {
-            Some(Limit::Whole(least, most)) => format!(" from {least} to {most}{unit}"),
-            Some(Limit::Signed(least, most)) => format!(" from {least} to {most}{unit}"),
-            Some(Limit::Number(least, most)) => format!(" from {least} to {most}{unit}"),
-            Some(Limit::Follows(words)) => format!(": {words}"),
+            Some(Limit::Whole(min, max)) => format!(" from {min} to {max}{unit}"),
+            Some(Limit::Signed(min, max)) => format!(" from {min} to {max}{unit}"),
+            Some(Limit::Number(min, max)) => format!(" from {min} to {max}{unit}"),
+            Some(Limit::Text(words)) => format!(": {words}"),
             _ => of_type(),
         };
-        self.refuse(value, &format!("{kind}{range}"))
+        self.reject_type(value, &format!("{kind}{range}"))
     }
 
     /// Reports the allowed length, if the field has one.
-    fn refuse_length(&mut self, value: Json<'_>, kind: &str) -> bool {
+    fn reject_length(&mut self, value: Json<'_>, kind: &str) -> bool {
         let length = match self.row.map(|row| row.limit) {
-            Some(Limit::Length(least, most, of)) => format!(" of {least} to {most} {of}"),
+            Some(Limit::Length(min, max, of)) => format!(" of {min} to {max} {of}"),
             _ => String::new(),
         };
-        self.refuse(value, &format!("{kind}{length}"))
+        self.reject_type(value, &format!("{kind}{length}"))
     }
 
-    pub(super) fn below(
+    pub(super) fn read_field(
         &mut self,
         row: Option<&'static Field>,
         name: &str,
         value: Json<'_>,
         target: &mut dyn Read,
     ) -> bool {
-        let (outside, outer) = (self.validator.enter(name), core::mem::replace(&mut self.row, row));
-        let taken = target.read(value, self);
-        self.row = outer;
-        self.validator.leave(outside);
-        taken
+        let (path_before, row_before) = (self.validator.enter(name), core::mem::replace(&mut self.row, row));
+        let is_read = target.read(value, self);
+        self.row = row_before;
+        self.validator.leave(path_before);
+        is_read
     }
 
-    pub(super) fn entry(&mut self, index: usize, value: Json<'_>, target: &mut dyn Read) -> bool {
-        let (outside, outer) = (self.validator.enter_entry(index), self.row.take());
-        let taken = target.read(value, self);
-        self.row = outer;
-        self.validator.leave(outside);
-        taken
+    pub(super) fn read_entry(&mut self, index: usize, value: Json<'_>, target: &mut dyn Read) -> bool {
+        let (path_before, row_before) = (self.validator.enter_entry(index), self.row.take());
+        let is_read = target.read(value, self);
+        self.row = row_before;
+        self.validator.leave(path_before);
+        is_read
     }
 
     /// False, and reported, if it is not an object.
     fn map<'v>(
         &mut self,
         value: Json<'v>,
-        wanted: &str,
+        expected: &str,
         each: &mut dyn FnMut(&mut Self, &str, Json<'v>),
     ) -> bool {
         if !value.is_map() {
-            return self.refuse(value, wanted);
+            return self.reject_type(value, expected);
         }
         if !value.members(&mut |name, value| each(self, name, value)) {
-            return self.wrong("a name is not valid Unicode; use another name".to_owned());
+            return self.reject("a name is not valid Unicode; use another name".to_owned());
         }
         true
     }
@@ -180,7 +180,7 @@ impl Reader {
             return self.validator.add(written, Cause::Type { detail });
         }
         given.push(row.name);
-        self.below(Some(row), row.name, value, target);
+        self.read_field(Some(row), row.name, value, target);
     }
 
     fn unknown(&mut self, name: &str, group: &Group, rename: Option<&Rename>) {
@@ -199,9 +199,9 @@ impl Reader {
         value: Json<'v>,
         group: &'static Group,
     ) -> Option<(&'static Field, Json<'v>)> {
-        let wanted = wanted_of(group);
+        let expected = expected_kinds(group);
         let (mut first, mut count) = (None, 0_usize);
-        let is_map = self.map(value, &wanted, &mut |_, name, content| {
+        let is_map = self.map(value, &expected, &mut |_, name, content| {
             count += 1;
             first.get_or_insert_with(|| {
                 let kind = group.fields.iter().find(|kind| kind.name == name);
@@ -216,7 +216,7 @@ impl Reader {
             Some((Err(name), _)) if count == 1 => {
                 self.note(format!("unknown kind \u{201c}{name}\u{201d}; use one of {}", group.names()));
             }
-            _ => self.note(format!("an object with {count} keys; use {wanted}")),
+            _ => self.note(format!("an object with {count} keys; use {expected}")),
         }
         None
     }
@@ -228,7 +228,8 @@ impl Reader {
             let mut renames = upgrade::WORDS.iter().filter(|rename| rename.old == text);
             renames.find_map(|rename| Some((index_of(rename.new)?, rename)))
         };
-        let number = value.whole().filter(|(is_negative, _)| !is_negative).map(|(_, size)| size.to_string());
+        let number =
+            value.whole().filter(|(is_negative, _)| !is_negative).map(|(_, number)| number.to_string());
         let text = value.text();
         let written = text.as_deref().or(number.as_deref()).unwrap_or_default();
         match (index_of(written), renamed(written)) {
@@ -241,7 +242,7 @@ impl Reader {
                 rename.last_version + 1
             )),
             (None, None) => {
-                self.refuse(value, &format!("one of {}", words.join(", ")));
+                self.reject_type(value, &format!("one of {}", words.join(", ")));
             }
         }
         None
@@ -249,7 +250,7 @@ impl Reader {
 }
 
 /// The hint names the group's own kinds: `{"mm": 250}` is wrong where a segment is expected.
-fn wanted_of(group: &Group) -> String {
+fn expected_kinds(group: &Group) -> String {
     let example = match group.fields.first() {
         Some(Field { name, ty: Type::Number, .. }) => format!("{{\"{name}\": 250}}"),
         Some(Field { name, ty: Type::List(_), .. }) => format!("{{\"{name}\": [\u{2026}]}}"),
@@ -271,31 +272,31 @@ fn describe(value: Json<'_>) -> String {
         "a list".to_owned()
     } else if value.is_map() {
         "an object".to_owned()
-    } else if value.written().starts_with('"') {
+    } else if value.raw().starts_with('"') {
         let text = value.text();
         text.map_or_else(
             || "a text with half of a surrogate pair".to_owned(),
             |text| format!("\u{201c}{}\u{201d}", short(&text)),
         )
     } else {
-        short(value.written())
+        short(value.raw())
     }
 }
 
 macro_rules! whole {
-    ($($ty:ty: $below:expr),*) => {$(
+    ($($ty:ty: $negative:expr),*) => {$(
         impl Read for $ty {
             fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
-                let below: fn(u64) -> Option<Self> = $below;
-                let found = value.whole().and_then(|(is_below, size)| {
-                    if is_below { below(size) } else { Self::try_from(size).ok() }
+                let negative: fn(u64) -> Option<Self> = $negative;
+                let found = value.whole().and_then(|(is_negative, magnitude)| {
+                    if is_negative { negative(magnitude) } else { Self::try_from(magnitude).ok() }
                 });
                 match found {
                     Some(number) => {
                         *self = number;
                         true
                     }
-                    None => reader.refuse_number(value, "a whole number", Some((&Self::MIN, &Self::MAX))),
+                    None => reader.reject_number(value, "a whole number", Some((&Self::MIN, &Self::MAX))),
                 }
             }
 
@@ -305,7 +306,7 @@ macro_rules! whole {
         }
     )*};
 }
-whole!(u8: |_| None, u16: |_| None, u32: |_| None, u64: |_| None, i64: |size| 0_i64.checked_sub_unsigned(size));
+whole!(u8: |_| None, u16: |_| None, u32: |_| None, u64: |_| None, i64: |magnitude| 0_i64.checked_sub_unsigned(magnitude));
 
 impl Read for f64 {
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
@@ -314,7 +315,7 @@ impl Read for f64 {
                 *self = number;
                 true
             }
-            None => reader.refuse_number(value, "a number", None),
+            None => reader.reject_number(value, "a number", None),
         }
     }
 
@@ -325,10 +326,10 @@ impl Read for f64 {
 
 impl Read for bool {
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
-        match value.written() {
+        match value.raw() {
             "true" => *self = true,
             "false" => *self = false,
-            _ => return reader.refuse(value, "true or false"),
+            _ => return reader.reject_type(value, "true or false"),
         }
         true
     }
@@ -345,7 +346,7 @@ impl Read for String {
                 *self = text.to_string();
                 true
             }
-            None => reader.refuse_length(value, "a text"),
+            None => reader.reject_length(value, "a text"),
         }
     }
 
@@ -361,11 +362,11 @@ impl<T: Read> Read for Option<T> {
             return true;
         }
         let mut inner = T::blank();
-        let taken = inner.read(value, reader);
-        if taken {
+        let is_read = inner.read(value, reader);
+        if is_read {
             *self = Some(inner);
         }
-        taken
+        is_read
     }
 
     fn blank() -> Self {
@@ -376,23 +377,23 @@ impl<T: Read> Read for Option<T> {
 impl<T: Read> Read for Vec<T> {
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
         if !value.is_list() {
-            return reader.refuse_length(value, "a list");
+            return reader.reject_length(value, "a list");
         }
         self.clear();
-        let most = MAX_LIST_BYTES / size_of::<T>().max(1);
+        let max = MAX_LIST_BYTES / size_of::<T>().max(1);
         let mut index = 0_usize;
         value.entries(&mut |entry| {
-            if index < most {
+            if index < max {
                 // An unreadable entry stays blank, so that the others keep their indexes.
                 let mut target = T::blank();
-                reader.entry(index, entry, &mut target);
+                reader.read_entry(index, entry, &mut target);
                 self.push(target);
             }
             index += 1;
         });
-        if index > most {
+        if index > max {
             *self = Self::new();
-            return reader.wrong(format!("{index} entries; use at most {most}"));
+            return reader.reject(format!("{index} entries; use at most {max}"));
         }
         true
     }

@@ -20,7 +20,7 @@ impl LineScript {
         let (_, head) = rows.next().unwrap_or_default();
         let column = |name: &str| head.iter().position(|field| field.trim() == name);
         let missing = |name: &str| {
-            rows.bad(
+            rows.error_at(
                 0,
                 format!("no column {name}; a table of packets needs start_cycle (or start_s) and bytes"),
             )
@@ -32,7 +32,7 @@ impl LineScript {
         // Tables with meanings mark all replies; older ones need the outcome.
         let outcome = column("outcome").filter(|_| column("meaning").is_none());
         let mut sends = Vec::new();
-        while let Some((at, row)) = rows.next() {
+        while let Some((position, row)) = rows.next() {
             let field = |index: usize| row.get(index).map_or("", |field| field.trim());
             if kind.is_some_and(|kind| ["reply", "collision"].contains(&field(kind))) {
                 continue;
@@ -45,12 +45,15 @@ impl LineScript {
                 } else {
                     ("start_cycle", "a whole number of cycles from 1")
                 };
-                rows.bad(at, format!("{name} is “{}”; use {allowed}", short(given)))
+                rows.error_at(position, format!("{name} is “{}”; use {allowed}", short(given)))
             })?;
             let given = field(bytes);
             let hex: String = given.split_whitespace().collect();
             let sent = base16ct::mixed::decode_vec(&hex).map_err(|_| {
-                rows.bad(at, format!("bytes are “{}”; use pairs of hexadecimal digits", short(given)))
+                rows.error_at(
+                    position,
+                    format!("bytes are “{}”; use pairs of hexadecimal digits", short(given)),
+                )
             })?;
             let of_another = outcome.is_some_and(|at| field(at) == OTHER_ADDRESS) && is_reply(&sent);
             if !sent.is_empty() && !of_another {
@@ -58,9 +61,10 @@ impl LineScript {
             }
         }
         if sends.is_empty() {
-            return Err(
-                rows.bad(rows.at, "the table has no packets; use at least one row with bytes".to_owned())
-            );
+            return Err(rows.error_at(
+                rows.position,
+                "the table has no packets; use at least one row with bytes".to_owned(),
+            ));
         }
         Ok(Self { sends })
     }

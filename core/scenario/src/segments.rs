@@ -25,7 +25,7 @@ impl SegmentLists {
         let total = self.channels.iter().map(|channel| channel.segments.len()).sum();
         validator.length("", total, 0..=MAX_SEGMENTS, "segments");
         let pulse = PulseTimes::from(bus);
-        let lists = self.channels.iter().take(MAX_CHANNELS).map(ChannelSegments::plain).collect();
+        let lists = self.channels.iter().take(MAX_CHANNELS).map(ChannelSegments::to_list).collect();
         match CheckedSegments::new(pulse, lists, MAX_PROBLEMS) {
             Ok(lists) => validator.end(lists),
             Err(refused) => {
@@ -46,7 +46,7 @@ impl SegmentLists {
 }
 
 impl ChannelSegments {
-    fn plain(&self) -> SegmentList {
+    fn to_list(&self) -> SegmentList {
         let segments = self.segments.iter().map(|each| match each {
             Segment::Steps(steps) => segment::Segment::Steps {
                 count: steps.count,

@@ -33,13 +33,13 @@ impl Scenario {
         let pulse = PulseTimes::from(&self.bus);
         let mut steps_left = MAX_PROFILE_STEPS;
         let parameters = controllers.iter().take(MAX_CHANNELS).enumerate().map(|(index, one)| {
-            validator.at_entry(index, |here| one.parameters(self.clock_hz, &mut steps_left, here))
+            validator.at_entry(index, |here| one.to_parameters(self.clock_hz, &mut steps_left, here))
         });
         let controllers = parameters.collect();
-        let read = validator.count() == before;
+        let is_read = validator.count() == before;
         let setup = Setup { clock_hz: self.clock_hz, channels: self.bus.channels, pulse, controllers };
         let checked = match setup.check() {
-            Ok(checked) => read.then_some(checked),
+            Ok(checked) => is_read.then_some(checked),
             Err(refused) => {
                 for one in refused {
                     let Some(controller) = one.controller else { continue };
@@ -58,18 +58,23 @@ impl Scenario {
 }
 
 impl StandAlone {
-    fn parameters(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> Parameters {
+    fn to_parameters(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> Parameters {
         let groups = here.at("groups", |groups| {
-            let mut plan = |(index, group): (usize, &ProgramGroup)| {
-                groups.at_entry(index, |here| group.plain(clock_hz, steps_left, here))
+            let mut to_group = |(index, group): (usize, &ProgramGroup)| {
+                groups.at_entry(index, |here| group.to_group(clock_hz, steps_left, here))
             };
             // The number of groups is checked elsewhere.
-            self.groups.iter().take(*limits::GROUPS.end() as usize + 1).enumerate().map(&mut plan).collect()
+            self.groups
+                .iter()
+                .take(*limits::GROUPS.end() as usize + 1)
+                .enumerate()
+                .map(&mut to_group)
+                .collect()
         });
         let inputs = here.at("inputs", |inputs| {
-            let plain =
-                |(index, input): (usize, &PanelInput)| inputs.at_entry(index, |here| input.plain(here));
-            self.inputs.iter().enumerate().map(plain).collect()
+            let to_input =
+                |(index, input): (usize, &PanelInput)| inputs.at_entry(index, |here| input.to_input(here));
+            self.inputs.iter().enumerate().map(to_input).collect()
         });
         Parameters {
             self_test_cycles: self.self_test_cycles,
@@ -94,9 +99,9 @@ impl StandAlone {
                 speed_hz: self.r#return.speed_hz,
                 level: self.r#return.acceleration_level,
             },
-            home: self.home.as_ref().map(Homing::plain),
-            soft_limits: self.soft_limits.as_ref().map(SoftLimits::plain),
-            axis: self.axis.as_ref().map(VirtualAxis::plain),
+            home: self.home.as_ref().map(Homing::to_home),
+            soft_limits: self.soft_limits.as_ref().map(SoftLimits::to_limits),
+            axis: self.axis.as_ref().map(VirtualAxis::to_axis),
             memory: parameters::Memory {
                 policy: self.memory.policy,
                 byte_write_cycles: self.memory.byte_write_cycles,
@@ -110,7 +115,7 @@ impl StandAlone {
 }
 
 impl ProgramGroup {
-    fn plain(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> Group {
+    fn to_group(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> Group {
         match self {
             Self::Move(group) => Group::Move(parameters::Move {
                 length: group.length,
@@ -118,7 +123,7 @@ impl ProgramGroup {
                 speed_hz: group.speed_hz,
                 level: group.acceleration_level,
                 delay_ms: group.delay_ms,
-                until: group.until.as_ref().map(Until::plain),
+                until: group.until.as_ref().map(Until::to_until),
             }),
             Self::MoveTo(group) => Group::MoveTo(parameters::MoveTo {
                 length: group.length.clamp(i32::MIN.into(), i32::MAX.into()) as i32,
@@ -127,7 +132,7 @@ impl ProgramGroup {
                 delay_ms: group.delay_ms,
             }),
             Self::Profile(group) => {
-                here.at("profile", |here| Group::Profile(group.plain(clock_hz, steps_left, here)))
+                here.at("profile", |here| Group::Profile(group.to_profile(clock_hz, steps_left, here)))
             }
             Self::Home(_) => Group::Home,
             Self::Wait(group) => Group::Wait(parameters::Wait {
@@ -150,7 +155,7 @@ impl ProgramGroup {
 }
 
 impl ProfileGroup {
-    fn plain(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> parameters::Profile {
+    fn to_profile(&self, clock_hz: u32, steps_left: &mut u64, here: &mut Validator) -> parameters::Profile {
         let mut profile = parameters::Profile {
             intervals: self.intervals_q16.clone(),
             direction: self.direction.is_positive().into(),
@@ -210,13 +215,13 @@ fn intervals(
 }
 
 impl Until {
-    fn plain(&self) -> parameters::Until {
+    fn to_until(&self) -> parameters::Until {
         parameters::Until { input: self.input.signal(), level: self.level != 0 }
     }
 }
 
 impl Homing {
-    fn plain(&self) -> parameters::Home {
+    fn to_home(&self) -> parameters::Home {
         parameters::Home {
             switch: self.switch.signal(),
             direction: self.direction.is_positive().into(),
@@ -230,13 +235,13 @@ impl Homing {
 }
 
 impl SoftLimits {
-    fn plain(&self) -> parameters::SoftLimits {
+    fn to_limits(&self) -> parameters::SoftLimits {
         parameters::SoftLimits { min_steps: self.min_steps, max_steps: self.max_steps }
     }
 }
 
 impl VirtualAxis {
-    fn plain(&self) -> parameters::Axis {
+    fn to_axis(&self) -> parameters::Axis {
         parameters::Axis {
             start_steps: self.start_steps,
             min_switch_at_steps: self.min_switch_at_steps,
@@ -276,7 +281,7 @@ impl Sensor {
 }
 
 impl PanelInput {
-    fn plain(&self, here: &mut Validator) -> Input {
+    fn to_input(&self, here: &mut Validator) -> Input {
         let change = match (self.input, self.push_steps) {
             (Some(signal), None) => Change::Level(signal, self.level != 0),
             (None, Some(steps)) => Change::Push(steps.clamp(i32::MIN.into(), i32::MAX.into()) as i32),
@@ -296,13 +301,13 @@ impl PanelInput {
 impl Read for Initial {
     fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
         let Some(text) = value.text() else {
-            return reader.refuse(value, "\"blank\", \"factory\" or bytes in hex, such as \"01 00 ff\"");
+            return reader.reject_type(value, "\"blank\", \"factory\" or bytes in hex, such as \"01 00 ff\"");
         };
         *self = match (&*text, Hex::of_text(&text)) {
             ("blank", _) => Self::Blank,
             ("factory", _) => Self::Factory,
             (_, Ok(Hex(bytes))) => Self::Bytes(bytes),
-            (_, Err(wrong)) => return reader.wrong(format!("{wrong}; or use blank or factory")),
+            (_, Err(wrong)) => return reader.reject(format!("{wrong}; or use blank or factory")),
         };
         true
     }
@@ -315,9 +320,9 @@ impl Read for Initial {
 impl ToParts for Initial {
     fn parts(&self) -> Parts<'_> {
         match self {
-            Self::Blank => Parts::Whole(Value::from("blank")),
-            Self::Factory => Parts::Whole(Value::from("factory")),
-            Self::Bytes(bytes) => Parts::Whole(Value::from(base16ct::lower::encode_string(bytes))),
+            Self::Blank => Parts::Value(Value::from("blank")),
+            Self::Factory => Parts::Value(Value::from("factory")),
+            Self::Bytes(bytes) => Parts::Value(Value::from(base16ct::lower::encode_string(bytes))),
         }
     }
 }

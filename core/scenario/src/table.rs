@@ -35,7 +35,8 @@ pub(super) fn short(text: &str) -> String {
 
 pub(super) struct Rows<'a> {
     text: &'a str,
-    pub(super) at: usize,
+    /// Bytes read so far.
+    pub(super) position: usize,
     reader: Reader,
 }
 
@@ -47,28 +48,28 @@ impl<'a> Rows<'a> {
             return Err(BadTable { line: 1, what });
         }
         let reader = ReaderBuilder::new().delimiter(separator).build();
-        Ok(Self { text: text.trim_start_matches('\u{feff}'), at: 0, reader })
+        Ok(Self { text: text.trim_start_matches('\u{feff}'), position: 0, reader })
     }
 
-    pub(super) fn bad(&self, at: usize, what: String) -> BadTable {
+    pub(super) fn error_at(&self, position: usize, what: String) -> BadTable {
         // Skip line ends, so that the number is the row's own.
-        let rest = self.text.get(at..).unwrap_or_default();
-        let begin = at + rest.len() - rest.trim_start_matches(['\r', '\n']).len();
+        let rest = self.text.get(position..).unwrap_or_default();
+        let begin = position + rest.len() - rest.trim_start_matches(['\r', '\n']).len();
         let before = self.text.get(..begin).unwrap_or_default();
         BadTable { line: 1 + before.matches('\n').count(), what }
     }
 
     pub(super) fn next(&mut self) -> Option<(usize, Vec<String>)> {
-        let begin = self.at;
+        let begin = self.position;
         let (mut out, mut ends) = (vec![0; 256], vec![0; 16]);
         let (mut written, mut fields) = (0, 0);
         loop {
             let (result, read, wrote, ended) = self.reader.read_record(
-                self.text.as_bytes().get(self.at..).unwrap_or_default(),
+                self.text.as_bytes().get(self.position..).unwrap_or_default(),
                 out.get_mut(written..).unwrap_or_default(),
                 ends.get_mut(fields..).unwrap_or_default(),
             );
-            (self.at, written, fields) = (self.at + read, written + wrote, fields + ended);
+            (self.position, written, fields) = (self.position + read, written + wrote, fields + ended);
             match result {
                 // The reader reports the end at a call without input.
                 ReadRecordResult::InputEmpty => {}

@@ -15,7 +15,7 @@ const fn until(last_version: u32, old: &'static str, new: &'static str) -> Renam
 }
 
 /// Fields. An old name is accepted where a group has the new name and not the old one.
-const FIELDS: &[Rename] = &[
+pub(crate) const FIELDS: &[Rename] = &[
     until(1, "driver", "driver_timing"),
     until(1, "pulses", "pulse_phasing"),
     until(1, "ticks_a_frame", "ticks_per_frame"),

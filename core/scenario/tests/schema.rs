@@ -53,30 +53,31 @@ fn every_row_says_what_it_is_and_what_it_is_called() {
 fn the_pages_explanations_are_what_the_schema_says() {
     let mut said = std::collections::BTreeMap::new();
     each(&Scenario::TYPE, "", &mut Vec::new(), &mut |_, group, field| {
-        if !field.explained.is_empty() {
-            said.insert(format!("{}.{}", group.name, field.name), [field.term, field.explained]);
+        if !field.explanation.is_empty() {
+            said.insert(format!("{}.{}", group.name, field.name), [field.term, field.explanation]);
         }
     });
     let mut text = String::from(
         "/** What the terms of a scenario's fields mean: written from the schema by its test, STEPSCOPE_BLESS=1. */\n",
     );
     text += "/** @type {{[id: string]: [string, string]}}  The card's head and its text. */\nexport const EXPLAINED = {\n";
-    for (id, [term, explained]) in said {
-        let [term, explained] = [term, explained].map(|text| serde_json::to_string(text).expect("a text"));
-        let line = format!("  \"{id}\": [{term}, {explained}],\n");
+    for (id, [term, explanation]) in said {
+        let [term, explanation] =
+            [term, explanation].map(|text| serde_json::to_string(text).expect("a text"));
+        let line = format!("  \"{id}\": [{term}, {explanation}],\n");
         // As the formatter breaks it.
-        let broken = format!("  \"{id}\": [\n    {term},\n    {explained},\n  ],\n");
+        let broken = format!("  \"{id}\": [\n    {term},\n    {explanation},\n  ],\n");
         text += if line.trim_end().chars().count() <= 120 { &line } else { &broken };
     }
     text += "};\n";
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web/help/explained.js");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web/help/explanation.js");
     if std::env::var_os("STEPSCOPE_BLESS").is_some() {
         fs::write(file, &text).expect("the file can be written");
     }
     assert_eq!(
         fs::read_to_string(file).unwrap_or_default(),
         text,
-        "STEPSCOPE_BLESS=1 writes web/help/explained.js"
+        "STEPSCOPE_BLESS=1 writes web/help/explanation.js"
     );
 }
 
@@ -110,7 +111,7 @@ fn what_the_form_asks_is_explained() {
     });
     let unexplained = |group: &Group, field: &Field| {
         asked(group, field)
-            && field.explained.is_empty()
+            && field.explanation.is_empty()
             && !of_plant(group, field)
             && !of_panel.contains(&group.name)
     };
@@ -120,21 +121,19 @@ fn what_the_form_asks_is_explained() {
 #[test]
 fn a_range_is_one_of_its_type_and_nothing_is_said_where_it_may_stand() {
     let optional = |ty: &Type| matches!(ty, Type::Optional(_));
-    assert_eq!(problems(|_, field| optional(&field.ty) == field.empty.is_empty()), [""; 0], "null");
+    assert_eq!(problems(|_, field| optional(&field.ty) == field.null_means.is_empty()), [""; 0], "null");
     let bare = |ty: &Type| match *ty {
         Type::Optional(inner) => *inner,
         ty => ty,
     };
     let wrong = |group: &Group, field: &Field| match (field.limit, bare(&field.ty)) {
-        (Limit::Type | Limit::Follows(_), _) => false,
-        (Limit::Whole(least, most), Type::Whole { most: type_most, .. }) => least > most || most > type_most,
-        (Limit::Signed(least, most), Type::Whole { least: type_least, .. }) => {
-            least > most || least < type_least
-        }
-        (Limit::Number(least, most), Type::Number | Type::Group(_)) => least > most,
+        (Limit::Type | Limit::Text(_), _) => false,
+        (Limit::Whole(min, max), Type::Whole { max: type_max, .. }) => min > max || max > type_max,
+        (Limit::Signed(min, max), Type::Whole { min: type_min, .. }) => min > max || min < type_min,
+        (Limit::Number(min, max), Type::Number | Type::Group(_)) => min > max,
         // The owner judges it as a float.
-        (Limit::Number(least, most), Type::Whole { .. }) => least > most || !group.is_external,
-        (Limit::Length(least, most, of), Type::Text | Type::List(_)) => least > most || of.is_empty(),
+        (Limit::Number(min, max), Type::Whole { .. }) => min > max || !group.is_external,
+        (Limit::Length(min, max, of), Type::Text | Type::List(_)) => min > max || of.is_empty(),
         _ => true,
     };
     assert_eq!(problems(wrong), [""; 0]);

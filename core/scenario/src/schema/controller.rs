@@ -27,10 +27,10 @@ settings! {
         /// Driver bus and queue.
         pub bus: Bus = Bus::default() => label("Driver bus"),
         /// Axes, if the source is a motion.
-        pub axes: Vec<Axis> = Vec::new() => label("Axes").follows("up to its number of channels"),
+        pub axes: Vec<Axis> = Vec::new() => label("Axes").range_text("up to its number of channels"),
         /// Packets, if the source is packets.
         pub packets: Vec<Hex> = Vec::new() => label("One packet per line")
-            .follows("as in `source.packets`")
+            .range_text("as in `source.packets`")
             .term("Packet", "What the host sends for one tick: one byte per motor, with the direction in bit 7 and the number of steps in bits 6 to 0.")
             .from(PATENT),
     }

@@ -67,9 +67,9 @@ fn field_of(field: &Field, groups: &mut Map<String, Value>) -> Value {
         ("label", field.label),
         ("text", field.text()),
         ("unit", field.unit),
-        ("empty", field.empty),
+        ("empty", field.null_means),
         ("term", field.term),
-        ("explained", field.explained),
+        ("explained", field.explanation),
         ("from", field.document.map_or("", |document| document.id)),
     ];
     for (name, text) in texts.into_iter().filter(|(_, text)| !text.is_empty()) {
@@ -77,8 +77,8 @@ fn field_of(field: &Field, groups: &mut Map<String, Value>) -> Value {
     }
     map.insert("type".into(), type_of(&field.ty, groups));
     map.insert("range".into(), range_of(field).into());
-    if let Limit::Length(_, most, _) = field.limit {
-        map.insert("most".into(), most.into());
+    if let Limit::Length(_, max, _) = field.limit {
+        map.insert("most".into(), max.into());
     }
     if let Some(When { field, is_path, is }) = field.when {
         map.insert("when".into(), json!({ if is_path { "path" } else { "key" }: field, "is": is }));

@@ -21,7 +21,7 @@ settings! {
     /// versions are accepted. Directions may be written as 1 (positive) and 0 (negative).
     pub struct Scenario {
         /// Version of this format.
-        pub version: u32 = VERSION => label("Version").follows("1 to 3"),
+        pub version: u32 = VERSION => label("Version").range_text("1 to 3"),
         /// Name of the experiment; part of the link.
         pub title: String = String::new() => label("Name")
             .length(0..=120, "characters")
@@ -46,7 +46,7 @@ settings! {
         pub run_cycles: Option<u64> = None => label("Run length")
             .unit("cycles")
             .whole(1..=END_OF_TIME)
-            .empty("until the last change")
+            .null_means("until the last change")
             .term("Run length", "When the run stops. Without it the run ends after the last change."),
         /// Settings of the spectrum.
         pub analysis: Analysis = Analysis::default() => label("Spectrum"),
@@ -54,9 +54,9 @@ settings! {
         pub controllers: Vec<Controller> = Vec::new() => label("Additional controllers")
             .length(0..=MAX_CONTROLLERS - 1, "additional controllers"),
         /// Driver whose timing the pulses are checked against. It does not affect the run.
-        pub driver_timing: Option<DriverTiming> = None => label("Driver timing").empty("not checked"),
+        pub driver_timing: Option<DriverTiming> = None => label("Driver timing").null_means("not checked"),
         /// Motors with their drivers, supply and sensors, driven by the pulses.
-        pub plant: Option<PlantSettings> = None => label("Motors and supply").only_if_set().empty("no motors: only the bus is simulated"),
+        pub plant: Option<PlantSettings> = None => label("Motors and supply").only_if_set().null_means("no motors: only the bus is simulated"),
     }
 }
 
@@ -65,7 +65,7 @@ settings! {
     pub struct Analysis {
         /// Axis of the motion, or channel.
         pub axis: u8 = 0 => label("Axis")
-            .follows("0 to the number of axes - 1 (of channels if there are no axes)")
+            .range_text("0 to the number of axes - 1 (of channels if there are no axes)")
             .term("Axis", "Axis of the spectrum. Axis 0 drives channel 0."),
         /// Highest harmonic of the distortion.
         pub max_harmonic: u16 = 40 => label("Max harmonic")
@@ -82,7 +82,7 @@ settings! {
         pub sensor_hz: Option<f64> = None => label("Sensor bandwidth")
             .unit("Hz")
             .number(1e-3..=1e9)
-            .empty("no sensor")
+            .null_means("no sensor")
             .term("Sensor bandwidth", "An accelerometer is a low-pass filter: at this frequency it measures 71 % of the acceleration, |H| = 1/√(1 + (f/f_b)²). The distortion it measures therefore does not grow with the number of harmonics.")
             .from(OWN),
     }

@@ -20,8 +20,8 @@ const PPM: RangeInclusive<u64> = 0..=1_000_000;
 /// The row of `receiver_baud`, for the first and for additional controllers.
 pub(super) const RECEIVER_BAUD: Field = label("Receiver bit rate")
     .unit("baud")
-    .follows("1 to 2*`clock_hz`/21")
-    .empty("same as the host")
+    .range_text("1 to 2*`clock_hz`/21")
+    .null_means("same as the host")
     .term("Receiver bit rate", "The receiver has its own clock. If its bit rate is about 5 % off, it samples the stop bit at the wrong time.")
     .from(OWN);
 
@@ -31,7 +31,7 @@ settings! {
         /// Bit rate of the host, 8N1; at least 11 clock cycles per bit.
         pub baud: u32 = 115_200 => label("Bit rate")
             .unit("baud")
-            .follows("1 to `clock_hz`")
+            .range_text("1 to `clock_hz`")
             .term("Bit rate", "Bits per second on the line. A byte takes ten bits.")
             .from(PATENT),
         /// Bit rate of the receiver, if its clock differs from the host's.
@@ -39,7 +39,7 @@ settings! {
         /// Address of the controller, if packets begin with one; 255 addresses all.
         pub address: Option<u8> = None => label("Address")
             .whole(limits::ADDRESS)
-            .empty("raw packets have no address; a framed controller has address 0")
+            .null_means("raw packets have no address; a framed controller has address 0")
             .term("Address", "Number of a controller on a shared line. A controller accepts packets that begin with its own address or with 255.")
             .from(PATENT),
         /// Framing protocol.
@@ -80,7 +80,7 @@ settings! {
         pub reply_timeout_cycles: Option<u32> = None => label("Reply timeout")
             .unit("cycles")
             .whole(1..=u32::MAX as u64)
-            .empty("256 bit times")
+            .null_means("256 bit times")
             .term("Reply timeout", "Without a complete reply in this time the frame is sent again with the same sequence number, so it is not executed twice.")
             .from(OWN)
             .when_at("line.protocol", "framed"),
@@ -152,7 +152,7 @@ settings! {
         /// Length of the forced level.
         pub length_cycles: u64 = 1 => label("Length")
             .unit("cycles")
-            .follows("from 1, ending within 9*10^15")
+            .range_text("from 1, ending within 9*10^15")
             .term("Length", "Number of cycles with the forced level.")
             .from(OWN),
         /// Forced level.

@@ -3,6 +3,7 @@
 use crate::{
     Parts, Scenario, ToParts, VERSION,
     schema::{Field, Group, Limit, Type, Typed, Word},
+    upgrade::{FIELDS, Rename, WORDS},
 };
 use alloc::{
     format,
@@ -23,6 +24,7 @@ pub fn markdown() -> String {
         section(&mut out, root, ("", ""), &mut done);
     }
     quantities(&mut out, &done);
+    former_names(&mut out);
     out.push_str(
         "## Links\n\nA link contains a scenario, and can contain the view and the digests of a run: [links.md](links.md).\n",
     );
@@ -46,38 +48,43 @@ fn section(
     if !path.is_empty() {
         let _ = writeln!(out, "## `{path}`: {label}\n");
     }
-    prose(out, group.doc);
+    write_doc(out, group.doc);
     if group.is_choice {
         out.push_str("| kind | | meaning |\n| --- | --- | --- |\n");
         for kind in group.fields {
-            let _ = writeln!(out, "| `{}` | {} | {} |", kind.name, kind.label, line(kind.doc));
+            let _ = writeln!(out, "| `{}` | {} | {} |", kind.name, kind.label, one_line(kind.doc));
         }
     } else if !group.fields.is_empty() {
         out.push_str("| field | unit, range | default | meaning |\n| --- | --- | --- | --- |\n");
         let blank = (group.blank)();
         if let Parts::Fields(_, values) = blank.parts() {
             for (field, (value, _)) in group.fields.iter().zip(values) {
-                row(out, field, value);
+                field_row(out, field, value);
             }
         }
     }
     out.push('\n');
     for field in group.fields {
         let below = if path.is_empty() { field.name.to_string() } else { format!("{path}.{}", field.name) };
-        inside(out, &field.ty, (&below, field.label), done);
+        sections_of_type(out, &field.ty, (&below, field.label), done);
     }
 }
 
-fn inside(out: &mut String, ty: &Type, (path, label): (&str, &str), done: &mut Vec<&'static Group>) {
+fn sections_of_type(
+    out: &mut String,
+    ty: &Type,
+    (path, label): (&str, &str),
+    done: &mut Vec<&'static Group>,
+) {
     match ty {
         Type::Group(group) => section(out, group, (path, label), done),
-        Type::Optional(inner) => inside(out, inner, (path, label), done),
-        Type::List(inner) => inside(out, inner, (&format!("{path}[]"), label), done),
+        Type::Optional(inner) => sections_of_type(out, inner, (path, label), done),
+        Type::List(inner) => sections_of_type(out, inner, (&format!("{path}[]"), label), done),
         _ => {}
     }
 }
 
-fn row(out: &mut String, field: &Field, default: &dyn ToParts) {
+fn field_row(out: &mut String, field: &Field, default: &dyn ToParts) {
     let quantity = quantity_of(&field.ty).map(|group| group.name.to_lowercase());
     let unit = quantity.as_deref().unwrap_or(field.unit);
     let range = range_of(field);
@@ -87,15 +94,15 @@ fn row(out: &mut String, field: &Field, default: &dyn ToParts) {
         Type::Optional(_) => allowed.push("or `null`"),
         _ => {}
     }
-    let mut meaning = line(field.doc);
+    let mut meaning = one_line(field.doc);
     let stop = meaning.pop().filter(|last| *last != '.');
     meaning.extend(stop);
     if let Type::Word(words) = field.ty {
-        let each = |word: &Word| format!("`\"{}\"` {}", word.name, line(word.doc));
+        let each = |word: &Word| format!("`\"{}\"` {}", word.name, one_line(word.doc));
         let _ = write!(meaning, ": {}", words.iter().map(each).collect::<Vec<_>>().join("; "));
     }
-    if !field.empty.is_empty() {
-        let _ = write!(meaning, "; `null`: {}", field.empty);
+    if !field.null_means.is_empty() {
+        let _ = write!(meaning, "; `null`: {}", field.null_means);
     }
     if let Some(when) = field.when {
         let _ = write!(meaning, "; only where `{}` is `\"{}\"`", when.field, when.is);
@@ -114,32 +121,32 @@ fn default_of(ty: &Type, default: &dyn ToParts) -> String {
     match (ty, default.parts()) {
         (Type::Group(group), Parts::Kind(name, value)) if is_quantity(group) => {
             let unit = group.fields.iter().find(|kind| kind.name == name).map_or("", |kind| kind.label);
-            format!("{} {unit}", plain(value))
+            format!("{} {unit}", value_text(value))
         }
         (Type::Group(_), Parts::Kind(name, _)) => format!("`{name}`"),
         (Type::Group(_), _) => "its own".into(),
-        (Type::List(Type::Point), _) => format!("`{}`", plain(default)),
+        (Type::List(Type::Point), _) => format!("`{}`", value_text(default)),
         (Type::List(_), Parts::List(entries)) if entries.is_empty() => "none".into(),
         (Type::List(_), Parts::List(entries)) => {
             format!("{} of them", entries.len()).replace("1 of them", "one")
         }
-        (Type::Text, Parts::Whole(value)) if value.as_str().is_some_and(|text| !text.is_empty()) => {
+        (Type::Text, Parts::Value(value)) if value.as_str().is_some_and(|text| !text.is_empty()) => {
             format!("`{value}`")
         }
         (Type::Text | Type::Hex, _) => "empty".into(),
-        (Type::Word(_) | Type::Optional(_), _) => format!("`{}`", plain(default)),
-        _ => plain(default),
+        (Type::Word(_) | Type::Optional(_), _) => format!("`{}`", value_text(default)),
+        _ => value_text(default),
     }
 }
 
-fn plain(value: &dyn ToParts) -> String {
+fn value_text(value: &dyn ToParts) -> String {
     match value.parts() {
         Parts::Number(number) => number.to_string(),
         Parts::List(entries) => {
-            let entries: Vec<String> = entries.into_iter().map(plain).collect();
+            let entries: Vec<String> = entries.into_iter().map(value_text).collect();
             format!("[{}]", entries.join(", "))
         }
-        Parts::Whole(value) => value.to_string(),
+        Parts::Value(value) => value.to_string(),
         Parts::Fields(..) | Parts::Kind(..) => String::new(),
     }
 }
@@ -147,17 +154,17 @@ fn plain(value: &dyn ToParts) -> String {
 /// Empty if every value of the type is allowed.
 pub(crate) fn range_of(field: &Field) -> String {
     match field.limit {
-        Limit::Whole(least, most) => format!("{} to {}", power(least as f64), power(most as f64)),
-        Limit::Signed(least, most) => format!("{} to {}", signed(least), signed(most)),
-        Limit::Number(least, most) => match quantity_of(&field.ty) {
-            Some(_) => format!("{} to {} {}", power(least), power(most), field.unit),
-            None => format!("{} to {}", power(least), power(most)),
+        Limit::Whole(min, max) => format!("{} to {}", power(min as f64), power(max as f64)),
+        Limit::Signed(min, max) => format!("{} to {}", signed(min), signed(max)),
+        Limit::Number(min, max) => match quantity_of(&field.ty) {
+            Some(_) => format!("{} to {} {}", power(min), power(max), field.unit),
+            None => format!("{} to {}", power(min), power(max)),
         },
-        Limit::Length(0, most, of) => format!("up to {most} {of}"),
-        Limit::Length(least, most, of) => format!("{least} to {most} {of}"),
-        Limit::Follows(words) => words.into(),
+        Limit::Length(0, max, of) => format!("up to {max} {of}"),
+        Limit::Length(min, max, of) => format!("{min} to {max} {of}"),
+        Limit::Text(words) => words.into(),
         Limit::Type => match field.ty {
-            Type::Whole { least, most } => format!("{} to {}", binary(least.into()), binary(most.into())),
+            Type::Whole { min, max } => format!("{} to {}", binary(min.into()), binary(max.into())),
             _ => String::new(),
         },
     }
@@ -197,14 +204,14 @@ fn power(number: f64) -> String {
         .unwrap_or_else(|| number.to_string())
 }
 
-fn prose(out: &mut String, doc: &str) {
+fn write_doc(out: &mut String, doc: &str) {
     for line in doc.lines() {
         let _ = writeln!(out, "{}", line.strip_prefix(' ').unwrap_or(line));
     }
     out.push('\n');
 }
 
-fn line(doc: &str) -> String {
+fn one_line(doc: &str) -> String {
     doc.trim().replace('|', "\\|")
 }
 
@@ -219,13 +226,29 @@ fn quantity_of(ty: &Type) -> Option<&'static Group> {
     }
 }
 
+fn former_names(out: &mut String) {
+    out.push_str("## Former names\n\nNames of versions 1 and 2. They are accepted up to that version, and in a scenario without `version`.\n\n");
+    out.push_str("| former name | up to version | name |\n| --- | --- | --- |\n");
+    for Rename { old, new, last_version } in
+        FIELDS.iter().chain(WORDS).filter(|one| one.last_version < VERSION)
+    {
+        let _ = writeln!(out, "| `{old}` | {last_version} | `{new}` |");
+    }
+    out.push('\n');
+}
+
 fn quantities(out: &mut String, groups: &[&'static Group]) {
     out.push_str("## Numbers with a unit\n\nAn object with one key, the unit: `{ \"mm\": 250 }`.\n\n");
     out.push_str("| | units | |\n| --- | --- | --- |\n");
     for group in groups.iter().filter(|group| is_quantity(group)) {
         let units = group.fields.iter().map(|kind| format!("`{}`", kind.name)).collect::<Vec<_>>();
-        let _ =
-            writeln!(out, "| {} | {} | {} |", group.name.to_lowercase(), units.join(", "), line(group.doc));
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} |",
+            group.name.to_lowercase(),
+            units.join(", "),
+            one_line(group.doc)
+        );
     }
     out.push('\n');
 }

@@ -53,8 +53,8 @@ fields! {
         /// Peak phase current of the driver.
         peak_current_a: Option<f64> => label("Peak current")
             .unit("A")
-            .follows("0.001 to 1.4143 times the rated current")
-            .empty("the rated current")
+            .range_text("0.001 to 1.4143 times the rated current")
+            .null_means("the rated current")
             .term("Peak current", "Amplitude of the phase currents. √2 times the rated current heats the motor as much as the rated current in both phases.")
             .from(OWN),
         /// Inertia of the load at the motor shaft.
@@ -73,17 +73,17 @@ fields! {
         working_rate_hz: Option<f64> => label("Working rate")
             .unit("steps/s")
             .number(limits::WORKING_RATE_HZ)
-            .empty("only the torque limits it")
+            .null_means("only the torque limits it")
             .term("Working rate", "Highest rate known to work with the load, f_s. Song 2021 states 19200 Hz.")
             .from(SONG),
         /// Coulomb friction of the rotor.
         friction_mn_m: f64 => label("Friction").named("friction_mN_m").only_if_set().unit("mN·m").number(plant::TORQUE_MN_M).from(OWN),
         /// Friction at rest.
-        stiction_mn_m: Option<f64> => label("Stiction").named("stiction_mN_m").only_if_set().unit("mN·m").follows("friction to 1000000").empty("the friction").from(OWN),
+        stiction_mn_m: Option<f64> => label("Stiction").named("stiction_mN_m").only_if_set().unit("mN·m").range_text("friction to 1000000").null_means("the friction").from(OWN),
         /// Friction proportional to the speed.
         viscous_un_m_s: f64 => label("Viscous friction").named("viscous_uN_m_s").only_if_set().unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
         /// Amplitude of the torque that holds the unpowered rotor.
-        detent_torque_mn_m: f64 => label("Detent torque").named("detent_torque_mN_m").only_if_set().unit("mN·m").follows("0 to half the holding torque").from(OWN),
+        detent_torque_mn_m: f64 => label("Detent torque").named("detent_torque_mN_m").only_if_set().unit("mN·m").range_text("0 to half the holding torque").from(OWN),
         /// A constant torque to the left.
         gravity_torque_mn_m: f64 => label("Gravity").named("gravity_torque_mN_m").only_if_set().unit("mN·m").number(plant::SIGNED_TORQUE_MN_M).from(OWN),
         /// Amplitude of a torque that is periodic in the load angle.
@@ -93,7 +93,7 @@ fields! {
         /// Phase of the periodic torque.
         sine_phase_deg: f64 => label("Phase").only_if_set().unit("°").number(plant::SINE_PHASE_DEG).from(OWN),
         /// Stiffness of the coupling between rotor and load. With one they are two masses.
-        coupling_n_m_rad: Option<f64> => label("Coupling").named("coupling_N_m_rad").only_if_set().unit("N·m/rad").number(plant::COUPLING_N_M_RAD).empty("rigid").from(OWN),
+        coupling_n_m_rad: Option<f64> => label("Coupling").named("coupling_N_m_rad").only_if_set().unit("N·m/rad").number(plant::COUPLING_N_M_RAD).null_means("rigid").from(OWN),
         /// Damping of the coupling.
         coupling_un_m_s: f64 => label("Coupling damping").named("coupling_uN_m_s").only_if_set().unit("µN·m·s").number(plant::VISCOUS_UN_M_S).from(OWN),
         /// Current control of the driver.
@@ -115,7 +115,7 @@ fields! {
         /// Minimum on-time of the chopper.
         blank_us: f64 => label("Blanking time").named("blanking_time_us").unit("µs").number(plant::CHOPPER_US).from(SHEETS),
         /// Steps of the DAC from 0 to the peak current.
-        dac_levels: Option<u16> => label("DAC steps").whole(plant::DAC_LEVELS).empty("not quantized").from(SHEETS),
+        dac_levels: Option<u16> => label("DAC steps").whole(plant::DAC_LEVELS).null_means("not quantized").from(SHEETS),
         /// Resistance of the bridge in series with a phase.
         bridge_ohm: f64 => label("Bridge").unit("Ω").number(plant::BRIDGE_OHM).from(SHEETS),
         /// Forward voltage of one diode.

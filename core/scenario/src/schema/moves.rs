@@ -24,7 +24,7 @@ fields! {
         moves: Vec<Move> => label("Moves").length(limits::MOVES, "moves"),
         /// Motor, supply and load.
         motor: Option<Motor> => label("Motor")
-            .empty("torque is not checked")
+            .null_means("torque is not checked")
             .term("Motor", "Motor data for the torque-speed curve: a two-phase hybrid motor on a driver that regulates the current. It does not affect the run. A move that needs more torque than the motor has gets a warning; Study > Torque shows both. The default is the motor of Song, Han, Lu 2021.")
             .from(SONG),
     }
@@ -42,17 +42,17 @@ kinds! {
         /// Speed follows half a cosine wave up to a plateau and back down, without jumps of acceleration. Distance and
         /// duration are exact.
         Cosine(Cosine) = "cosine" => label("Cosine S-curve").from(SONG),
-        /// Like the cosine S-curve, with exact distance and duration, but with ramps of another shape. Compare their peak
-        /// rate, acceleration and jerk. Song 2021 compares sigmoid and Bezier curves with the cosine.
+        /// Like the cosine S-curve, with exact distance and duration, but with ramps of another shape. Song 2021 compares
+        /// sigmoid and Bezier curves with the cosine.
         Ramps(Ramps) = "ramps" => label("Ramps of a shape").from(SONG),
         /// A sine of straight segments, each with a constant rate: a few numbers instead of one interval per step. The
         /// maximum deviation d1 determines the breakpoints.
         SineSegments(SineSegments) = "sine_segments" => label("Sine in segments").from(SINE),
-        /// Each step comes where the sine itself is halfway between two steps. This is the ideal for the sine in segments;
-        /// it needs one interval per step.
+        /// Each step comes where the sine is halfway between two steps. The sine in segments approximates this; the exact
+        /// sine needs one interval per step.
         Sine(Sine) = "sine" => label("Exact sine").from(SINE),
-        /// As fast as the limits of speed, acceleration and jerk allow. It has seven phases; a short move omits some. A
-        /// machine vibrates less without jumps of acceleration.
+        /// As fast as the limits of speed, acceleration and jerk allow, in up to seven phases. The acceleration does not
+        /// jump, so a machine vibrates less.
         JerkLimited(JerkLimited) = "jerk_limited" => label("Jerk-limited S-curve").from(OWN),
         /// A curve given as times and positions, such as a cam, a measurement or the output of another program. Each step
         /// comes where the curve crosses half a step.
@@ -101,7 +101,7 @@ const DURATION: Field = label("Duration")
     .term("Duration", "Time from the start to the end of the move.");
 const RAMP: Field = label("Ramp")
     .unit("s")
-    .follows("0 to half of the duration; below 10^-9 it counts as 0")
+    .range_text("0 to half of the duration; below 10^-9 it counts as 0")
     .term("Ramp", "Time t_s of each ramp. Peak rate = steps / (duration − ramp): a longer ramp is gentler but has a higher peak.")
     .from(SONG);
 const AMPLITUDE: Field = label("Amplitude")
@@ -132,7 +132,7 @@ fields! {
         max_acceleration: Acceleration => MAX_ACCELERATION,
         /// How step times are computed.
         method: TrapezoidMethod => label("Step times")
-            .term("Step times", "A small controller stores one pulse rate per step and loads a timer with clock / rate. Both are rounded to whole numbers, so each step is slightly early or late. Exact times have no such error.")
+            .term("Step times", "A small controller stores one pulse rate per step and reloads a timer with clock / rate. Both are whole numbers, so each step is slightly early or late. Exact step times have no such error.")
             .from(SONOBE),
         /// Clock of the timer that the table reloads.
         timer_hz: u32 => label("Timer clock")
@@ -156,15 +156,15 @@ fields! {
             .from(ZHANG),
         /// Moves that are too short for the top speed.
         short_move: ShortMove => label("Short moves")
-            .term("Short moves", "A move shorter than both ramps never reaches its top speed. Zhang 2012 runs all of it at the start speed; turning back at the highest row that fits is faster.")
+            .term("Short moves", "A move that is shorter than both ramps cannot reach its top speed. Zhang 2012 runs it at the start speed; to accelerate to the highest rate that fits is faster.")
             .from(ZHANG),
         /// First rate of the table, f_1.
         start_speed: Speed => START_SPEED,
-        /// The table ends with the first rate above this, f_max. The top speed must not exceed it.
+        /// The table ends with the first rate above this value, f_max. The top speed must not exceed it.
         max_speed: Speed => label("Table ends above")
             .unit("steps/s")
             .number(limits::TABLE_RATE_STEPS_S)
-            .term("Table ends above", "The table contains rates up to the first one above this.")
+            .term("Table ends above", "The table has rates up to the first one above this value.")
             .from(ZHANG),
     }
     /// A given number of steps in a given time.
@@ -177,13 +177,13 @@ fields! {
         ramp_s: f64 => RAMP,
         /// How step times are computed.
         method: CosineMethod => label("Step times")
-            .term("Step times", "A small controller reads the curve once per slice and makes whole steps in it, which are too few. Song 2021 therefore scales the curve up until the sum is right and then shortens the plateau, so the move ends up to 0.8 % early. Exact times have no such error.")
+            .term("Step times", "A small controller reads the curve once per slice and rounds down to whole steps, which are too few in total. Song 2021 therefore scales the curve up and shortens the plateau, so the move ends up to 0.8 % early. Exact step times have no such error.")
             .from(SONG),
         /// Length of a slice; 0.001 in Song 2021.
         slice_s: f64 => label("Slice")
             .unit("s")
             .number(limits::SLICE_S)
-            .term("Slice", "Time TS during which the rate is constant, 1 ms in Song 2021. Each slice has the whole steps of the rate at its start.")
+            .term("Slice", "Time T_S during which the rate is constant, 1 ms in Song 2021. The rate at the start of a slice determines its number of steps.")
             .from(SONG)
             .when("method", "sliced"),
     }
@@ -197,18 +197,18 @@ fields! {
         ramp_s: f64 => RAMP,
         /// Shape of the ramps. Deceleration mirrors acceleration.
         shape: RampShape => label("Shape")
-            .term("Shape", "Shape of the speed ramp. Straight: constant acceleration, the lowest peak, but it jumps. Exponential: steep at low speed, where a motor has the most torque; it has the lowest peak rate. Sigmoid and Bezier: gentle start and end, like a cosine.")
+            .term("Shape", "Shape of the speed ramp. Straight: the lowest peak acceleration, but the acceleration jumps. Exponential: the lowest peak rate; it is steep at low speed, where a motor has the most torque. Sigmoid and Bezier: gentle at both ends, like a cosine.")
             .from(SONG),
-        /// x of 1/(1 + e⁻ˣ) goes from minus to plus this over a ramp.
+        /// Over a ramp, x in 1/(1 + e⁻ˣ) goes from minus this value to plus this value.
         sigmoid_range: f64 => label("Sigmoid range")
             .number(limits::RAMP_PARAMETER)
-            .term("Sigmoid range", "1/(1 + e⁻ˣ) never ends, so it is cut off at this value on both sides and stretched to reach full speed. A small range is nearly straight; a large one concentrates the acceleration in the middle.")
+            .term("Sigmoid range", "1/(1 + e⁻ˣ) only approaches 0 and 1, so the ramp uses x from minus this value to plus this value, stretched to full speed. With a small range the ramp is nearly straight; with a large one the acceleration peaks in the middle.")
             .from(SONG)
             .when("shape", "sigmoid"),
         /// Time constants of the exponential per ramp.
         time_constants: f64 => label("Time constants")
             .number(limits::RAMP_PARAMETER)
-            .term("Time constants", "Time constants of the exponential per ramp. More make it steeper at the start and flatter at the top; few make it nearly straight.")
+            .term("Time constants", "Time constants of the exponential per ramp. A higher number makes the ramp steeper at the start and flatter at the end; a low number makes it nearly straight.")
             .when("shape", "exponential"),
     }
     /// From the right extreme to the left one and back.
@@ -297,10 +297,10 @@ words! {
         Exact = "exact", "exact";
     }
     ShortMove {
-        /// the whole move at the start speed (Zhang 2012)
+        /// run the whole move at the start speed (Zhang 2012)
         Document = "at_start_speed", "at start speed";
-        /// up to the highest row that fits, and down again
-        Reverse = "reverse", "reverse at the highest row";
+        /// accelerate to the highest rate that fits, then decelerate
+        Reverse = "reverse", "accelerate and decelerate";
     }
     CosineMethod {
         /// each step where the ideal curve crosses its half-integer
@@ -309,7 +309,7 @@ words! {
         Sliced = "sliced", "in slices";
     }
     RampShape {
-        /// 1/(1 + e^-x), stretched to begin at rest and end at top speed
+        /// 1/(1 + e^-x), stretched from rest to full speed
         Sigmoid = "sigmoid", "sigmoid";
         /// 3x^2 - 2x^3
         Bezier = "bezier", "Bezier";

@@ -14,12 +14,12 @@ settings! {
     pub struct PlantSettings {
         /// Grid step of the simulation.
         pub step_cycles: Option<u32> = None => label("Grid step")
-            .unit("cycles").whole(limits::STEP_CYCLES).empty("5 us, with a chopper 1 us").from(OWN),
+            .unit("cycles").whole(limits::STEP_CYCLES).null_means("5 us, with a chopper 1 us").from(OWN),
         /// Resistance of the source; only used with a buffer.
         pub source_ohm: f64 = 0.1 => label("Source").unit("Ω").number(limits::SOURCE_OHM).from(OWN),
         /// Buffer capacitance at the drivers.
         pub buffer_uf: Option<f64> = None => label("Buffer")
-            .unit("µF").number(limits::BUFFER_UF).empty("no buffer: the voltage is constant").from(OWN),
+            .unit("µF").number(limits::BUFFER_UF).null_means("no buffer: the voltage is constant").from(OWN),
         /// Whether the source accepts current from the drivers.
         pub source_sinks: bool = false => label("Source sinks current").from(OWN),
         /// Idle current of each driver.
@@ -31,7 +31,7 @@ settings! {
         /// Encoder on each rotor, 4096 codes per turn.
         pub encoder: Encoder = Encoder::default() => label("Encoder"),
         /// Overload protection by the supply current.
-        pub protection: Option<Protection> = None => label("Protection").empty("none").from(PATENT),
+        pub protection: Option<Protection> = None => label("Protection").null_means("none").from(PATENT),
         /// Whether the self-test measures the settling time for staggered pulses.
         pub self_test: bool = false => label("Self-test measures settling").from(PATENT),
         /// Motors of channels whose axis has none.

@@ -22,43 +22,43 @@ pub(crate) fn check_ranges(part: &dyn ToParts, validator: &mut Validator) {
                 validator.at_entry(index, |here| check_ranges(entry, here));
             }
         }
-        Parts::Whole(_) | Parts::Number(_) => {}
+        Parts::Value(_) | Parts::Number(_) => {}
     }
 }
 
 fn check_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
     match field.limit {
-        Limit::Type | Limit::Follows(_) => {}
-        Limit::Whole(least, most) => {
-            if let Parts::Whole(Value::Number(number)) = value.parts()
+        Limit::Type | Limit::Text(_) => {}
+        Limit::Whole(min, max) => {
+            if let Parts::Value(Value::Number(number)) = value.parts()
                 && let Some(given) = number.as_u64()
             {
-                validator.whole("", given, least..=most, field.unit);
+                validator.whole("", given, min..=max, field.unit);
             }
         }
-        Limit::Signed(least, most) => {
-            if let Parts::Whole(Value::Number(number)) = value.parts()
+        Limit::Signed(min, max) => {
+            if let Parts::Value(Value::Number(number)) = value.parts()
                 && let Some(given) = number.as_i64()
-                && !(least..=most).contains(&given)
+                && !(min..=max).contains(&given)
             {
-                let (given, least, most) = (given as f64, least as f64, most as f64);
-                validator.add("", ValueError::Range { given, min: least, max: most, unit: field.unit });
+                let (given, min, max) = (given as f64, min as f64, max as f64);
+                validator.add("", ValueError::Range { given, min: min, max: max, unit: field.unit });
             }
         }
-        Limit::Number(least, most) => {
+        Limit::Number(min, max) => {
             if let Parts::Number(given) = value.parts()
-                && !(least..=most).contains(&given)
+                && !(min..=max).contains(&given)
             {
-                validator.add("", ValueError::Range { given, min: least, max: most, unit: field.unit });
+                validator.add("", ValueError::Range { given, min: min, max: max, unit: field.unit });
             }
         }
-        Limit::Length(least, most, of) => {
+        Limit::Length(min, max, of) => {
             let given = match value.parts() {
-                Parts::Whole(Value::String(text)) => text.chars().count(),
+                Parts::Value(Value::String(text)) => text.chars().count(),
                 Parts::List(entries) => entries.len(),
-                _ => least,
+                _ => min,
             };
-            validator.length("", given, least..=most, of);
+            validator.length("", given, min..=max, of);
         }
     }
     if holds_limits(&field.ty) {
@@ -71,7 +71,7 @@ fn holds_limits(ty: &Type) -> bool {
     match ty {
         Type::Group(group) => {
             let is_checked = |field: &Field| {
-                !matches!(field.limit, Limit::Type | Limit::Follows(_)) || holds_limits(&field.ty)
+                !matches!(field.limit, Limit::Type | Limit::Text(_)) || holds_limits(&field.ty)
             };
             !group.is_external && group.fields.iter().any(is_checked)
         }

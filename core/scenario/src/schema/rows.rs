@@ -142,11 +142,11 @@ macro_rules! kinds {
                 match kind.name {
                     $($key => {
                         let mut inner = <$ty as $crate::Read>::blank();
-                        let taken = reader.below(Some(kind), kind.name, content, &mut inner);
-                        if taken {
+                        let is_read = reader.read_field(Some(kind), kind.name, content, &mut inner);
+                        if is_read {
                             *self = Self::$variant(inner);
                         }
-                        taken
+                        is_read
                     })*
                     _ => false,
                 }
@@ -182,7 +182,7 @@ macro_rules! words {
 
         impl $crate::schema::ToParts for $ty {
             fn parts(&self) -> $crate::schema::Parts<'_> {
-                $crate::schema::Parts::Whole(serde_json::Value::from(match self {
+                $crate::schema::Parts::Value(serde_json::Value::from(match self {
                     $(Self::$variant => $word,)*
                 }))
             }

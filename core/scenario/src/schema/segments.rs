@@ -21,7 +21,7 @@ settings! {
     pub struct SegmentLists {
         /// One list per channel.
         pub channels: Vec<ChannelSegments> = Vec::new() => label("Lists")
-            .follows("up to 16, no more than `bus.channels`"),
+            .range_text("up to 16, no more than `bus.channels`"),
     }
 }
 
@@ -36,7 +36,7 @@ settings! {
         /// Count, interval, change of the interval, direction: `20 1048576000 -500 right`; or `dwell 65536000`. Times are in
         /// 1/65536 cycle.
         pub segments: Vec<Segment> = Vec::new() => label("One segment per line")
-            .follows("up to 1 000 000 on all channels")
+            .range_text("up to 1 000 000 on all channels")
             .term("Segment", "A number of steps whose intervals change by a constant. An acceleration table with one reload per step is a list of segments of one step.")
             .from(SONOBE),
     }
@@ -56,7 +56,7 @@ settings! {
     /// Steps whose intervals change by a constant.
     pub struct StepSegment {
         /// Number of steps, from 1.
-        pub count: u32 = 1 => label("Count").follows("1 to 2^32 - 1"),
+        pub count: u32 = 1 => label("Count").range_text("1 to 2^32 - 1"),
         /// Time before the first step; 16000 cycles by default.
         pub interval_q16: u64 = 16_000 << 16 => label("Interval").unit("1/65536 cycle"),
         /// Change of each following interval.

@@ -46,7 +46,7 @@ settings! {
     /// is at least W + max(H + D, 1) cycles. A motion lasts at most 10^6 s.
     pub struct Motion {
         /// Axes, each with its mechanics and moves.
-        pub axes: Vec<Axis> = vec![Axis::default()] => label("Axes").follows("1 to 16, no more than `bus.channels`"),
+        pub axes: Vec<Axis> = vec![Axis::default()] => label("Axes").range_text("1 to 16, no more than `bus.channels`"),
         /// How steps are generated.
         pub engine: MotionEngine = MotionEngine::Ticks => label("Step generation")
             .term("Step generation", "Ticks: the host sends the number of steps of each tick (RU 2704486). Segments: the controller runs the move without a host, from a table of intervals (Sonobe 2011, Zhang 2012, Song 2021).")
@@ -79,7 +79,7 @@ settings! {
     pub struct Packets {
         /// In hex, one packet per tick, one byte per channel: bit 7 is the direction (1 right), bits 6 to 0 the steps.
         pub packets: Vec<Hex> = Vec::new() => label("One packet per line")
-            .follows("`bus.channels` bytes each, plus the address")
+            .range_text("`bus.channels` bytes each, plus the address")
             .term("Packet", "What the host sends for one tick: one byte per motor, with the direction in bit 7 and the number of steps in bits 6 to 0.")
             .from(PATENT),
     }
@@ -89,7 +89,7 @@ settings! {
     /// Replays bytes at given cycles. `{ "start_cycle": 2000, "frame": "0505" }` stops controller 5.
     pub struct LineScript {
         /// In order of time, without overlap.
-        pub sends: Vec<ScriptedSend> = Vec::new() => label("Sends").follows("at most 4 MiB of bytes"),
+        pub sends: Vec<ScriptedSend> = Vec::new() => label("Sends").range_text("at most 4 MiB of bytes"),
     }
 }
 
@@ -107,7 +107,7 @@ settings! {
         /// Instead of bytes: address, kind and body in hex, such as `ff 05` (STOP for all). CRC, COBS and delimiters are
         /// added.
         pub frame: Option<Hex> = None => label("Frame")
-            .empty("the bytes are sent")
+            .null_means("the bytes are sent")
             .term("Frame", "Address, kind and body with a CRC, between two zero bytes. COBS removes the zeros from the content, so that the end of a frame is always found.")
             .from(OWN)
             .when_at("line.protocol", "framed"),

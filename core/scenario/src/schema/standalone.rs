@@ -48,11 +48,11 @@ settings! {
         /// Decimal places of lengths: with 1 the digits 305 are 30.5.
         pub decimals: u8 = 1 => label("Decimals").whole(whole(&limits::DECIMALS)).from(ZHANG),
         /// Lowest rate of the table, f_1. The motor starts at it.
-        pub start_speed_hz: u32 = 1000 => label("Start-stop rate").unit("Hz").follows("10 to `max_speed_hz`")
+        pub start_speed_hz: u32 = 1000 => label("Start-stop rate").unit("Hz").range_text("10 to `max_speed_hz`")
             .term("Start-stop rate", "The motor can start and stop at this rate without a ramp. A jump to a higher rate may lose steps, so the position is lost.")
             .from(ZHANG),
         /// Maximum rate of all moves.
-        pub max_speed_hz: u32 = 20_000 => label("Max speed").unit("Hz").follows("10 to 10^7, limited by the pulse times").from(ZHANG),
+        pub max_speed_hz: u32 = 20_000 => label("Max speed").unit("Hz").range_text("10 to 10^7, limited by the pulse times").from(ZHANG),
         /// Acceleration of level 1. Level n has n times as much.
         pub level_hz_s: u32 = 1000 => label("Acceleration of level 1").unit("Hz/s").whole(whole(&limits::LEVEL_HZ_S)).from(ZHANG),
         /// Moves that are too short for their speed.
@@ -72,11 +72,11 @@ settings! {
         /// Moves back to zero.
         pub r#return: ReturnToZero = ReturnToZero::default() => label("Return to zero"),
         /// Search for a switch that sets the zero.
-        pub home: Option<Homing> = None => label("Homing").empty("no homing").from(OWN),
+        pub home: Option<Homing> = None => label("Homing").null_means("no homing").from(OWN),
         /// Limits of commanded positions.
-        pub soft_limits: Option<SoftLimits> = None => label("Soft limits").empty("none").from(OWN),
+        pub soft_limits: Option<SoftLimits> = None => label("Soft limits").null_means("none").from(OWN),
         /// Virtual axis with switches.
-        pub axis: Option<VirtualAxis> = None => label("Virtual axis").empty("no switches").from(OWN),
+        pub axis: Option<VirtualAxis> = None => label("Virtual axis").null_means("no switches").from(OWN),
         /// EEPROM and power failure.
         pub memory: Eeprom = Eeprom::default() => label("Memory"),
         /// Button presses, switches and pushes, with their times.
@@ -145,10 +145,10 @@ word_enums! {
 
 words! {
     ShortMove {
-        /// the whole move at the start-stop rate
+        /// run the whole move at the start-stop rate
         Document = "at_start_speed", "start-stop rate";
-        /// accelerate as far as possible, then decelerate
-        TurnRound = "reverse", "up and down";
+        /// accelerate to the highest rate that fits, then decelerate
+        TurnRound = "reverse", "accelerate and decelerate";
     }
     Release {
         /// stops at once (Zhang 2012)
@@ -232,7 +232,7 @@ const LENGTH: Field = label("Length").unit("digits")
 const POSITION_OF_GROUP: Field = label("Position").unit("digits").from(ZHANG);
 const SPEED: Field = speed("Speed");
 const fn speed(name: &'static str) -> Field {
-    label(name).unit("Hz").follows("10 to `max_speed_hz`").from(ZHANG)
+    label(name).unit("Hz").range_text("10 to `max_speed_hz`").from(ZHANG)
 }
 const LEVEL: Field = label("Acceleration level").whole(whole(&limits::LEVEL)).from(ZHANG);
 const DELAY: Field = label("Delay").unit("ms").whole(whole(&limits::DELAY_MS)).from(ZHANG);
@@ -275,7 +275,7 @@ settings! {
         /// Delay after it.
         pub delay_ms: u32 = 0 => DELAY,
         /// An input that ends it early.
-        pub until: Option<Until> = None => label("Until").empty("full length").from(OWN),
+        pub until: Option<Until> = None => label("Until").null_means("full length").from(OWN),
     }
 }
 
@@ -283,7 +283,7 @@ settings! {
     /// Level of an input that ends a move.
     pub struct Until {
         /// `home_switch` or `in_0` to `in_3`.
-        pub input: Sensor = Sensor::In0 => label("Input").follows("not a limit switch").from(OWN),
+        pub input: Sensor = Sensor::In0 => label("Input").range_text("not a limit switch").from(OWN),
         /// The level.
         pub level: u8 = 1 => ON,
     }
@@ -307,10 +307,10 @@ settings! {
     /// A motion of any kind or a list of intervals, in one direction.
     pub struct ProfileGroup {
         /// One move of an axis (`source.motion`), in steps and one direction.
-        pub motion: Option<Move> = None => label("Motion").empty("use the intervals"),
+        pub motion: Option<Move> = None => label("Motion").null_means("use the intervals"),
         /// Interval before each step, up to 1 000 000.
         pub intervals_q16: Vec<u64> = Vec::new() => label("One interval per line").unit("1/65536 cycle")
-            .follows("at least the pulse times, at most 2^64 - 1; up to 1 000 000 lines"),
+            .range_text("at least the pulse times, at most 2^64 - 1; up to 1 000 000 lines"),
         /// Direction of the steps; used with intervals.
         pub direction: Direction = Direction::Positive => DIRECTION,
         /// Delay after it.
@@ -334,7 +334,7 @@ settings! {
         /// Maximum wait; 0 waits forever.
         pub timeout_ms: u32 = 0 => label("Timeout").unit("ms").whole(whole(&limits::TIMEOUT_MS)).from(OWN),
         /// Next group after a timeout.
-        pub then: Option<u8> = None => label("Then").follows("1 to the number of groups").empty("alarm TIMEOUT"),
+        pub then: Option<u8> = None => label("Then").range_text("1 to the number of groups").null_means("alarm TIMEOUT"),
     }
 }
 
@@ -352,7 +352,7 @@ settings! {
     /// Continues at an earlier group until that has run a number of times.
     pub struct RepeatGroup {
         /// First group to repeat.
-        pub first: u8 = 1 => label("First").follows("1 to below this group's number").from(OWN),
+        pub first: u8 = 1 => label("First").range_text("1 to below this group's number").from(OWN),
         /// Number of runs.
         pub times: u16 = 2 => label("Times").whole(whole(&limits::LOOPS)).from(OWN),
     }
@@ -362,9 +362,9 @@ settings! {
     /// Continues at another group.
     pub struct JumpGroup {
         /// Next group.
-        pub to: u8 = 1 => label("To").follows("1 to the number of groups").from(OWN),
+        pub to: u8 = 1 => label("To").range_text("1 to the number of groups").from(OWN),
         /// Only if this input has the level.
-        pub input: Option<Sensor> = None => label("Input").empty("always"),
+        pub input: Option<Sensor> = None => label("Input").null_means("always"),
         /// The level.
         pub level: u8 = 1 => ON,
     }
@@ -402,9 +402,9 @@ settings! {
         /// Direction of the search.
         pub direction: Direction = Direction::Negative => DIRECTION,
         /// Rate towards the switch.
-        pub coarse_hz: u32 = 1000 => label("Coarse rate").unit("Hz").follows("10 to `start_speed_hz`").from(OWN),
+        pub coarse_hz: u32 = 1000 => label("Coarse rate").unit("Hz").range_text("10 to `start_speed_hz`").from(OWN),
         /// Rate of the final approach.
-        pub fine_hz: u32 = 10 => label("Fine rate").unit("Hz").follows("10 to `start_speed_hz`").from(OWN),
+        pub fine_hz: u32 = 10 => label("Fine rate").unit("Hz").range_text("10 to `start_speed_hz`").from(OWN),
         /// Steps beyond the opening of the switch.
         pub pull_off_steps: u32 = 20 => label("Pull-off").unit("steps").whole(whole(&limits::PULL_OFF_STEPS)).from(OWN),
         /// Maximum steps of each approach.
@@ -434,17 +434,17 @@ settings! {
         /// Initial position.
         pub start_steps: i64 = 0 => axis_position("Start"),
         /// `limit_min` is 1 from here to the left.
-        pub min_switch_at_steps: Option<i64> = None => axis_position("Left switch, up to").empty("the left limit switch is an input"),
+        pub min_switch_at_steps: Option<i64> = None => axis_position("Left switch, up to").null_means("the left limit switch is an input"),
         /// `limit_max` is 1 from here to the right.
-        pub max_switch_at_steps: Option<i64> = None => axis_position("Right switch, from").empty("the right limit switch is an input"),
+        pub max_switch_at_steps: Option<i64> = None => axis_position("Right switch, from").null_means("the right limit switch is an input"),
         /// `home_switch` is 1 from here …
-        pub home_from_steps: Option<i64> = None => axis_position("Home switch, from").empty("the home switch is an input"),
+        pub home_from_steps: Option<i64> = None => axis_position("Home switch, from").null_means("the home switch is an input"),
         /// … to here. Use both or neither.
-        pub home_to_steps: Option<i64> = None => axis_position("Home switch, to").empty("the home switch is an input"),
+        pub home_to_steps: Option<i64> = None => axis_position("Home switch, to").null_means("the home switch is an input"),
         /// Hard stop on the left, where steps are lost.
-        pub hard_min_steps: Option<i64> = None => axis_position("Left hard stop").empty("no hard stop"),
+        pub hard_min_steps: Option<i64> = None => axis_position("Left hard stop").null_means("no hard stop"),
         /// Hard stop on the right.
-        pub hard_max_steps: Option<i64> = None => axis_position("Right hard stop").empty("no hard stop"),
+        pub hard_max_steps: Option<i64> = None => axis_position("Right hard stop").null_means("no hard stop"),
     }
 }
 
@@ -473,10 +473,10 @@ settings! {
         /// Cycle of the change.
         pub cycle: u64 = 1 => label("Cycle").unit("cycles").whole(whole(&limits::INPUT_CYCLE)),
         /// Input that changes.
-        pub input: Option<Signal> = None => label("Input").empty("a push"),
+        pub input: Option<Signal> = None => label("Input").null_means("a push"),
         /// New level.
         pub level: u8 = 1 => ON,
         /// Moves the axis by this number of steps while the windings have no current.
-        pub push_steps: Option<i64> = None => label("Push").unit("steps").signed(signed(&limits::PUSH_STEPS)).empty("an input"),
+        pub push_steps: Option<i64> = None => label("Push").unit("steps").signed(signed(&limits::PUSH_STEPS)).null_means("an input"),
     }
 }

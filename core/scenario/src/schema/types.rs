@@ -1,7 +1,5 @@
 //! The types of the schema.
 
-#![allow(missing_docs, reason = "only names that need one have a text")]
-
 use alloc::{boxed::Box, string::String, vec::Vec};
 use core::ops::RangeInclusive;
 use serde_json::Value;
@@ -9,11 +7,15 @@ use stepscope_motion::moves::Point;
 
 /// The parts of a value. Code that writes values needs no generics.
 pub enum Parts<'a> {
-    Whole(Value),
+    /// A text, an integer, a bool or null.
+    Value(Value),
+    /// A number that may have a fraction.
     Number(f64),
+    /// The entries of a list.
     List(Vec<&'a dyn ToParts>),
     /// The fields of a group in order, and whether each differs from its default.
     Fields(&'static Group, Vec<(&'a dyn ToParts, bool)>),
+    /// The name of a choice's kind, and its settings.
     Kind(&'static str, &'a dyn ToParts),
 }
 
@@ -26,20 +28,24 @@ pub trait ToParts {
 /// A field of a group, or a kind of a choice.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
+    /// Name in JSON.
     pub name: &'static str,
     /// Documentation; each line begins with a space.
     pub doc: &'static str,
+    /// Type in JSON.
     pub ty: Type,
+    /// Label in the form.
     pub label: &'static str,
     /// Unit; empty for a plain number.
     pub unit: &'static str,
+    /// Allowed values.
     pub limit: Limit,
-    /// Meaning of null.
-    pub empty: &'static str,
+    /// Meaning of null; empty if null is not allowed.
+    pub null_means: &'static str,
     /// Title of the help card; empty without a card.
     pub term: &'static str,
     /// Text of the help card.
-    pub explained: &'static str,
+    pub explanation: &'static str,
     /// The paper that it comes from.
     pub document: Option<&'static Document>,
     /// When it is used; `None` for always.
@@ -51,13 +57,20 @@ pub struct Field {
 /// A field's type in JSON.
 #[derive(Clone, Copy, Debug)]
 pub enum Type {
+    /// An integer.
     Whole {
-        least: i64,
-        most: u64,
+        /// Minimum of the Rust type.
+        min: i64,
+        /// Maximum of the Rust type.
+        max: u64,
     },
+    /// A number that may have a fraction.
     Number,
+    /// True or false.
     Bool,
+    /// A text.
     Text,
+    /// Bytes in hexadecimal.
     Hex,
     /// A point of a curve: time in s and position.
     Point,
@@ -65,24 +78,31 @@ pub enum Type {
     Word(&'static [Word]),
     /// An object with fields, or with the one key of a choice.
     Group(&'static Group),
+    /// The type, or null.
     Optional(&'static Type),
+    /// A list of the type.
     List(&'static Type),
 }
 
 /// A word of a choice without settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Word {
+    /// Name in JSON.
     pub name: &'static str,
+    /// Label in the form.
     pub label: &'static str,
+    /// Meaning.
     pub doc: &'static str,
 }
 
 /// The fields of a struct, or the kinds of an enum.
 #[derive(Debug)]
 pub struct Group {
+    /// Name of the Rust type.
     pub name: &'static str,
     /// Documentation in Markdown.
     pub doc: &'static str,
+    /// Its fields, or its kinds.
     pub fields: &'static [Field],
     /// Whether it is a choice of one.
     pub is_choice: bool,
@@ -95,15 +115,18 @@ pub struct Group {
 /// The allowed values of a single field.
 #[derive(Clone, Copy, Debug)]
 pub enum Limit {
+    /// Every value of the type.
     Type,
+    /// Minimum and maximum of an integer.
     Whole(u64, u64),
-    /// A range that may be negative.
+    /// Minimum and maximum of an integer that may be negative.
     Signed(i64, i64),
+    /// Minimum and maximum of a number.
     Number(f64, f64),
-    /// A number of characters or entries, and their name.
+    /// Minimum and maximum number of characters or entries, and their name.
     Length(usize, usize, &'static str),
     /// A range that depends on other fields, as text.
-    Follows(&'static str),
+    Text(&'static str),
 }
 
 /// A field that is used only if another field has a value.
@@ -113,12 +136,14 @@ pub struct When {
     pub field: &'static str,
     /// Whether `field` is a whole path.
     pub is_path: bool,
+    /// The value of the other field.
     pub is: &'static str,
 }
 
 /// The source of an experiment or a term.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Document {
+    /// Name in the schema's JSON.
     pub id: &'static str,
     /// Short name for people.
     pub short: &'static str,
@@ -126,41 +151,49 @@ pub struct Document {
     pub title: &'static str,
 }
 
+/// Patent RU 2704486.
 pub const PATENT: &Document = &Document {
     id: "patent",
     short: "RU 2704486, 2019",
     title: "Patent RU 2704486 C1, 2019: tick-by-tick control of several stepper motors over USB (Russian)",
 };
+/// Sonobe 2011.
 pub const SONOBE: &Document = &Document {
     id: "sonobe",
     short: "Sonobe 2011",
     title: "Y. Sonobe, University of Electro-Communications, 2011: speed control of stepper motors, trapezoidal acceleration by table (slides, Japanese)",
 };
+/// Song, Han and Lu 2021.
 pub const SONG: &Document = &Document {
     id: "song",
     short: "Song 2021",
     title: "Song, Han, Lu, 2021: exact S-curve control of a stepper motor. Electric Machines & Control Application 48 (11), page 27 (Chinese)",
 };
+/// SWorldJournal 2022.
 pub const SINE: &Document = &Document {
     id: "sine",
     short: "SWorldJournal 2022",
     title: "SWorldJournal, issue 11, part 1, 2022: sinusoidal motion of a vibration-calibration carriage as a sum of segments of fixed speed (Ukrainian)",
 };
+/// Zhang 2012.
 pub const ZHANG: &Document = &Document {
     id: "zhang",
     short: "Zhang 2012",
     title: "Zhang, 2012: design of a single-axis fixed-length controller for a stepper motor on an ATmega128 (Chinese)",
 };
+/// Data sheets of drivers.
 pub const SHEETS: &Document = &Document {
     id: "sheets",
     short: "driver data sheets",
     title: "Data sheets of the drivers: Allegro A4988 (4988-DS), Texas Instruments DRV8825 (SLVSA73), Trinamic TMC2209 (rev. 1.09) and others",
 };
+/// Defined by Stepscope.
 pub const OWN: &Document = &Document {
     id: "own",
     short: "Stepscope",
     title: "Stepscope: the framed protocol, the line model and the bit-exact link, described in docs/ of the source",
 };
+/// All sources.
 pub const DOCUMENTS: [&Document; 7] = [PATENT, SONOBE, SONG, SINE, ZHANG, SHEETS, OWN];
 
 pub(crate) const fn label(label: &'static str) -> Field {
@@ -171,17 +204,17 @@ pub(crate) const fn label(label: &'static str) -> Field {
         label,
         unit: "",
         limit: Limit::Type,
-        empty: "",
+        null_means: "",
         term: "",
-        explained: "",
+        explanation: "",
         document: None,
         when: None,
         only_if_set: false,
     }
 }
 
-/// Removes `r#`.
-const fn plain(name: &'static str) -> &'static str {
+/// Removes `r#` from the Rust name of a field such as `r#return`.
+const fn without_raw_prefix(name: &'static str) -> &'static str {
     match name.as_bytes() {
         [b'r', b'#', rest @ ..] => match core::str::from_utf8(rest) {
             Ok(rest) => rest,
@@ -201,7 +234,7 @@ impl Group {
 impl Field {
     /// Completes a row. Without [`Self::named`] the name in JSON is the Rust name.
     pub(crate) const fn declared(self, rust_name: &'static str, doc: &'static str, ty: Type) -> Self {
-        let name = if self.name.is_empty() { plain(rust_name) } else { self.name };
+        let name = if self.name.is_empty() { without_raw_prefix(rust_name) } else { self.name };
         Self { name, doc, ty, ..self }
     }
 
@@ -230,20 +263,20 @@ impl Field {
         Self { limit: Limit::Length(*range.start(), *range.end(), of), ..self }
     }
 
-    pub(crate) const fn follows(self, range: &'static str) -> Self {
-        Self { limit: Limit::Follows(range), ..self }
+    pub(crate) const fn range_text(self, range: &'static str) -> Self {
+        Self { limit: Limit::Text(range), ..self }
     }
 
     pub(crate) const fn only_if_set(self) -> Self {
         Self { only_if_set: true, ..self }
     }
 
-    pub(crate) const fn empty(self, empty: &'static str) -> Self {
-        Self { empty, ..self }
+    pub(crate) const fn null_means(self, null_means: &'static str) -> Self {
+        Self { null_means, ..self }
     }
 
-    pub(crate) const fn term(self, term: &'static str, explained: &'static str) -> Self {
-        if cfg!(feature = "explanations") { Self { term, explained, ..self } } else { self }
+    pub(crate) const fn term(self, term: &'static str, explanation: &'static str) -> Self {
+        if cfg!(feature = "explanations") { Self { term, explanation, ..self } } else { self }
     }
 
     pub(crate) const fn from(self, document: &'static Document) -> Self {
@@ -274,7 +307,7 @@ pub trait Typed {
 macro_rules! whole {
     ($($ty:ty),*) => {$(
         impl Typed for $ty {
-            const TYPE: Type = Type::Whole { least: <$ty>::MIN as i64, most: <$ty>::MAX as u64 };
+            const TYPE: Type = Type::Whole { min: <$ty>::MIN as i64, max: <$ty>::MAX as u64 };
         }
     )*};
 }
