@@ -71,7 +71,7 @@ export const EXPLAINED = {
   "Cosine.duration_s": ["Duration", "Time from the start to the end of the move."],
   "Cosine.method": [
     "Step times",
-    "A small controller reads the curve once per slice and makes whole steps in it, which are too few. Song 2021 therefore scales the curve up until the sum is right and then shortens the plateau, so the move ends up to 0.8 % early. Exact times have no such error.",
+    "A small controller reads the curve once per slice and rounds down to whole steps, which are too few in total. Song 2021 therefore scales the curve up and shortens the plateau, so the move ends up to 0.8 % early. Exact step times have no such error.",
   ],
   "Cosine.ramp_s": [
     "Ramp",
@@ -79,7 +79,7 @@ export const EXPLAINED = {
   ],
   "Cosine.slice_s": [
     "Slice",
-    "Time TS during which the rate is constant, 1 ms in Song 2021. Each slice has the whole steps of the rate at its start.",
+    "Time T_S during which the rate is constant, 1 ms in Song 2021. The rate at the start of a slice determines its number of steps.",
   ],
   "Direct.step_mm": ["One step", "Travel of one step, measured or given."],
   "Dwell.duration_s": ["Duration", "Time from the start to the end of the move."],
@@ -207,15 +207,15 @@ export const EXPLAINED = {
   ],
   "Ramps.shape": [
     "Shape",
-    "Shape of the speed ramp. Straight: constant acceleration, the lowest peak, but it jumps. Exponential: steep at low speed, where a motor has the most torque; it has the lowest peak rate. Sigmoid and Bezier: gentle start and end, like a cosine.",
+    "Shape of the speed ramp. Straight: the lowest peak acceleration, but the acceleration jumps. Exponential: the lowest peak rate; it is steep at low speed, where a motor has the most torque. Sigmoid and Bezier: gentle at both ends, like a cosine.",
   ],
   "Ramps.sigmoid_range": [
     "Sigmoid range",
-    "1/(1 + e⁻ˣ) never ends, so it is cut off at this value on both sides and stretched to reach full speed. A small range is nearly straight; a large one concentrates the acceleration in the middle.",
+    "1/(1 + e⁻ˣ) only approaches 0 and 1, so the ramp uses x from minus this value to plus this value, stretched to full speed. With a small range the ramp is nearly straight; with a large one the acceleration peaks in the middle.",
   ],
   "Ramps.time_constants": [
     "Time constants",
-    "Time constants of the exponential per ramp. More make it steeper at the start and flatter at the top; few make it nearly straight.",
+    "Time constants of the exponential per ramp. A higher number makes the ramp steeper at the start and flatter at the end; a low number makes it nearly straight.",
   ],
   "Rotary.full_step_deg": ["Full step", "Angle of one full step of the motor; usually 1.8°."],
   "Rotary.microsteps": [
@@ -259,10 +259,10 @@ export const EXPLAINED = {
   "SineSegments.periods": ["Periods", "Number of oscillations. The spectrum uses whole periods."],
   "Staircase.acceleration_level": ["Acceleration level", "One of five accelerations: level times 1000 steps/s²."],
   "Staircase.distance": ["Distance", "Travel of the move, rounded to whole steps."],
-  "Staircase.max_speed": ["Table ends above", "The table contains rates up to the first one above this."],
+  "Staircase.max_speed": ["Table ends above", "The table has rates up to the first one above this value."],
   "Staircase.short_move": [
     "Short moves",
-    "A move shorter than both ramps never reaches its top speed. Zhang 2012 runs all of it at the start speed; turning back at the highest row that fits is faster.",
+    "A move that is shorter than both ramps cannot reach its top speed. Zhang 2012 runs it at the start speed; to accelerate to the highest rate that fits is faster.",
   ],
   "Staircase.start_speed": [
     "Start speed",
@@ -308,7 +308,7 @@ export const EXPLAINED = {
   ],
   "Trapezoid.method": [
     "Step times",
-    "A small controller stores one pulse rate per step and loads a timer with clock / rate. Both are rounded to whole numbers, so each step is slightly early or late. Exact times have no such error.",
+    "A small controller stores one pulse rate per step and reloads a timer with clock / rate. Both are whole numbers, so each step is slightly early or late. Exact step times have no such error.",
   ],
   "Trapezoid.start_speed": [
     "Start speed",

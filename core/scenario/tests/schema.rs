@@ -70,14 +70,14 @@ fn the_pages_explanations_are_what_the_schema_says() {
         text += if line.trim_end().chars().count() <= 120 { &line } else { &broken };
     }
     text += "};\n";
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web/help/explanation.js");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../web/help/explained.js");
     if std::env::var_os("STEPSCOPE_BLESS").is_some() {
         fs::write(file, &text).expect("the file can be written");
     }
     assert_eq!(
         fs::read_to_string(file).unwrap_or_default(),
         text,
-        "STEPSCOPE_BLESS=1 writes web/help/explanation.js"
+        "STEPSCOPE_BLESS=1 writes web/help/explained.js"
     );
 }
 
