@@ -29,7 +29,7 @@ impl ValidatedScenario {
     /// If the scenario has problems, or no such axis.
     pub(crate) fn axis(&self, controller: usize, axis: usize) -> Result<sim::SelectedAxis<'_>, JsError> {
         self.0.experiment().map_err(listed)?;
-        self.0.axis(controller, axis).ok_or_else(|| JsError::new("no such axis"))
+        self.0.axis(controller, axis).ok_or_else(|| JsError::new("unknown axis; select one with motion"))
     }
 }
 

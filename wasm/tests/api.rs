@@ -15,17 +15,17 @@ use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
 
 wasm_bindgen_test_configure!(run_in_dedicated_worker);
 
-/// The value of a call that no text and no scenario of the tests may make fail.
-fn sure<T, E>(result: Result<T, E>) -> T {
+/// The value of a call that must succeed.
+fn expect_ok<T, E>(result: Result<T, E>) -> T {
     result.unwrap_or_else(|_| unreachable!("the call failed"))
 }
 
-/// What the tests' scenarios have.
-fn there<T>(found: Option<T>) -> T {
+/// The value, which must exist.
+fn expect_some<T>(found: Option<T>) -> T {
     found.unwrap_or_else(|| unreachable!("it is missing"))
 }
 
-/// What is said of a text before it runs.
+/// The validation of a scenario.
 fn check(json: &str) -> Result<JsValue, wasm_bindgen::JsError> {
     ValidatedScenario::new(json).check()
 }
@@ -36,13 +36,13 @@ fn encode_link(json: &str) -> Result<String, wasm_bindgen::JsError> {
 
 /// A finished run.
 fn finished(json: &str) -> Simulation {
-    let mut simulation = sure(ValidatedScenario::new(json).run());
-    while !get(&sure(simulation.advance(100_000)), "done").is_truthy() {}
+    let mut simulation = expect_ok(ValidatedScenario::new(json).run());
+    while !get(&expect_ok(simulation.advance(100_000)), "done").is_truthy() {}
     simulation
 }
 
-fn paths(judgement: &JsValue) -> Vec<String> {
-    list(judgement, "problems").iter().map(|problem| text(problem, "path")).collect()
+fn paths(validation: &JsValue) -> Vec<String> {
+    list(validation, "problems").iter().map(|problem| text(problem, "path")).collect()
 }
 
 fn positions(controller: &JsValue) -> Vec<f64> {
@@ -51,14 +51,14 @@ fn positions(controller: &JsValue) -> Vec<f64> {
 
 /// The finished run of a preset.
 fn preset(id: &str) -> Simulation {
-    let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
+    let all = expect_ok(presets()).unchecked_into::<js_sys::Array>().to_vec();
     let found = all.iter().find(|preset| text(preset, "id") == id);
     finished(&found.map(|preset| text(preset, "scenario")).unwrap_or_default())
 }
 
-/// All rows of the packets of the controller that is looked at.
+/// All packet rows of the selected controller.
 fn rows(simulation: &Simulation) -> Vec<JsValue> {
-    list(&sure(simulation.packets(0, u32::MAX)), "rows")
+    list(&expect_ok(simulation.packets(0, u32::MAX)), "rows")
 }
 
 /// Numbers of a typed array.
@@ -68,23 +68,23 @@ fn numbers(object: &JsValue, name: &str) -> Vec<f64> {
 
 #[wasm_bindgen_test]
 fn a_valid_scenario_is_checked_with_its_derived_values() {
-    let judgement = sure(check(&default_scenario()));
-    assert_eq!(paths(&judgement), [""; 0]);
-    assert_eq!(text(&judgement, "scenario"), default_scenario());
-    let derived = get(&judgement, "derived");
+    let validation = expect_ok(check(&default_scenario()));
+    assert_eq!(paths(&validation), [""; 0]);
+    assert_eq!(text(&validation, "scenario"), default_scenario());
+    let derived = get(&validation, "derived");
     let first = &list(&derived, "controllers")[0];
     assert_eq!(number(first, "tick_s"), 0.002);
     assert_eq!(number(first, "limit_steps_s"), 50_000.0);
     assert_eq!(number(&list(first, "axes")[0], "steps"), 3200.0);
     assert_eq!(number(&list(first, "axes")[0], "peak_speed_steps_s"), 16_000.0);
-    let cost = get(&judgement, "cost");
+    let cost = get(&validation, "cost");
     assert!(!get(&cost, "over_budget").is_truthy() && text(&cost, "message").is_empty());
     assert!(number(&cost, "edges") > 6400.0);
     assert!(!version().is_empty());
 }
 
 #[wasm_bindgen_test]
-fn all_problems_of_a_bad_text_are_listed_with_their_paths() {
+fn all_problems_of_an_invalid_scenario_are_listed_with_their_paths() {
     let rows: [(&str, &[&str]); 7] = [
         ("", &[""]),
         ("{", &[""]),
@@ -98,30 +98,30 @@ fn all_problems_of_a_bad_text_are_listed_with_their_paths() {
         ),
     ];
     for (given, expected) in rows {
-        let judgement = sure(check(given));
-        let mut found = paths(&judgement);
+        let validation = expect_ok(check(given));
+        let mut found = paths(&validation);
         found.sort();
         assert_eq!(found, expected, "{given}");
-        assert!(list(&judgement, "problems").iter().all(|problem| !text(problem, "message").is_empty()));
-        assert!(get(&judgement, "derived").is_null() && get(&judgement, "cost").is_null(), "{given}");
-        assert!(paths(&sure(check(&text(&judgement, "scenario")))).len() <= expected.len(), "{given}");
+        assert!(list(&validation, "problems").iter().all(|problem| !text(problem, "message").is_empty()));
+        assert!(get(&validation, "derived").is_null() && get(&validation, "cost").is_null(), "{given}");
+        assert!(paths(&expect_ok(check(&text(&validation, "scenario")))).len() <= expected.len(), "{given}");
         assert!(ValidatedScenario::new(given).run().is_err(), "{given}");
     }
 }
 
 #[wasm_bindgen_test]
-fn links_go_there_and_back_and_bad_ones_say_why() {
-    let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
+fn links_are_decoded_and_invalid_ones_state_the_error() {
+    let all = expect_ok(presets()).unchecked_into::<js_sys::Array>().to_vec();
     assert!(!all.is_empty());
     for preset in &all {
         let scenario = text(preset, "scenario");
-        let link = sure(encode_link(&scenario));
-        let opened = sure(open_link(&format!("#{link}&v=views")));
+        let link = expect_ok(encode_link(&scenario));
+        let opened = expect_ok(open_link(&format!("#{link}&v=views")));
         assert_eq!(text(&opened, "scenario"), scenario, "{}", text(preset, "id"));
         assert!(!get(&opened, "over_budget").is_truthy(), "{}", text(preset, "id"));
         assert!(!text(preset, "document").is_empty());
     }
-    let link = sure(encode_link(&default_scenario()));
+    let link = expect_ok(encode_link(&default_scenario()));
     for (given, why) in [
         (String::new(), "no scenario"),
         ("v=1".into(), "no scenario"),
@@ -130,7 +130,7 @@ fn links_go_there_and_back_and_bad_ones_say_why() {
         ("c=1".repeat(10_000), "too long"),
         ("c=1.z.__proto__.00000000".into(), "cut short"),
     ] {
-        let error = text(&sure(open_link(&given)), "error");
+        let error = text(&expect_ok(open_link(&given)), "error");
         assert!(error.contains(why), "{why}: {error}");
     }
     assert!(encode_link("{").is_err());
@@ -140,40 +140,40 @@ fn links_go_there_and_back_and_bad_ones_say_why() {
 
 #[wasm_bindgen_test]
 fn stand_alone_controllers_have_a_run_and_panels() {
-    let all = sure(presets()).unchecked_into::<js_sys::Array>().to_vec();
+    let all = expect_ok(presets()).unchecked_into::<js_sys::Array>().to_vec();
     let scenarios = all.iter().map(|preset| (text(preset, "id"), text(preset, "scenario")));
     let standalone: Vec<_> = scenarios.filter(|(_, scenario)| scenario.contains("\"standalone\"")).collect();
     assert!(standalone.len() > 5);
     for (id, scenario) in standalone {
-        let mut run = sure(ValidatedScenario::new(&scenario).run());
-        while !get(&sure(run.advance(1000)), "done").is_truthy() {}
-        let summary = sure(run.summary());
+        let mut run = expect_ok(ValidatedScenario::new(&scenario).run());
+        while !get(&expect_ok(run.advance(1000)), "done").is_truthy() {}
+        let summary = expect_ok(run.summary());
         assert!(!get(&summary, "recorded").is_truthy(), "{id}");
-        let panel = JsValue::from(there(run.panel(0)));
+        let panel = JsValue::from(expect_some(run.panel(0)));
         let shown = numbers(&panel, "records");
         assert!(shown.len() >= 4 && !numbers(&panel, "inputs").is_empty(), "{id}");
         // The state at the last record is that record's.
         let [cycle, word, position, display] = shown[shown.len() - 4..] else { unreachable!("four numbers") };
-        let at = there(run.panel_at(0, cycle + 1.0));
+        let at = expect_some(run.panel_at(0, cycle + 1.0));
         assert_eq!(at[..3], [word, position, display], "{id}");
     }
     assert!(finished("{}").panel(0).is_none());
 }
 
 #[wasm_bindgen_test]
-fn a_link_beyond_the_budget_says_so() {
+fn a_link_over_the_budget_is_marked() {
     // Ten million edges of STEP.
     let scenario = r#"{"bus":{"channels":1,"slots":127,"step_period_cycles":100},"line":{"baud":1000000},
         "source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":5000000},"speed":{"steps_s":150000}}}]}]}}}"#;
-    let opened = sure(open_link(&sure(encode_link(scenario))));
+    let opened = expect_ok(open_link(&expect_ok(encode_link(scenario))));
     assert!(get(&opened, "over_budget").is_truthy());
     assert!(text(&opened, "message").contains("edges"));
 }
 
 #[wasm_bindgen_test]
-fn the_default_motion_is_there_from_curve_to_packet() {
+fn the_default_motion_has_curves_pulses_and_packets() {
     let mut simulation = finished(&default_scenario());
-    let summary = sure(simulation.summary());
+    let summary = expect_ok(simulation.summary());
     assert!(!get(&summary, "framed").is_truthy() && get(&summary, "host").is_null());
     let [only] = &list(&summary, "controllers")[..] else { unreachable!("there is one controller") };
     assert_eq!(positions(only), [3200.0]);
@@ -197,16 +197,16 @@ fn the_default_motion_is_there_from_curve_to_packet() {
     }
     assert_eq!(numbers(&motion, "actual_position_max").last(), Some(&3200.0));
 
-    let packets = sure(simulation.packets(100, 3));
+    let packets = expect_ok(simulation.packets(100, 3));
     assert_eq!(number(&packets, "total"), 200.0);
     let rows = list(&packets, "rows");
     assert_eq!(rows.len(), 3);
     assert_eq!((number(&rows[0], "index"), text(&rows[0], "outcome").as_str()), (100.0, "queued"));
     assert!(text(&rows[0], "fields").starts_with("ch0 +") && text(&rows[0], "hex").len() == 2);
     assert!(number(&rows[0], "tick_start_cycle") > number(&rows[0], "end_cycle"));
-    assert_eq!(list(&sure(simulation.packets(200, 5)), "rows").len(), 0);
+    assert_eq!(list(&expect_ok(simulation.packets(200, 5)), "rows").len(), 0);
 
-    let spectrum = sure(simulation.spectrum());
+    let spectrum = expect_ok(simulation.spectrum());
     for name in ["ideal", "pulses"] {
         let lines = numbers(&get(&spectrum, name), "position");
         assert_eq!(lines.len(), 40, "{name}");
@@ -220,7 +220,7 @@ fn the_default_motion_is_there_from_curve_to_packet() {
 }
 
 #[wasm_bindgen_test]
-fn edges_are_found_in_both_directions_and_columns_hold_them() {
+fn edges_are_found_in_both_directions_and_are_in_the_columns() {
     // The golden case `tick`: STEP rises at 0x108 and 0x188, falls at 0x118 and 0x198.
     let case = stepscope_tests::golden::CASES.iter().find(|case| case.name == "tick");
     let simulation = finished(case.and_then(|case| case.json().ok()).unwrap_or_default());
@@ -256,11 +256,11 @@ fn edges_are_found_in_both_directions_and_columns_hold_them() {
     assert_eq!(margins.to_vec()[..2], [0, 0], "the first column of the margin ends before reset");
     assert_eq!(margins.length(), 2 * 14);
 
-    let pulse = sure(simulation.pulse_at(0, 0x110.into()));
+    let pulse = expect_ok(simulation.pulse_at(0, 0x110.into()));
     assert!(get(&pulse, "high").is_truthy());
     assert_eq!(["begin", "end", "next"].map(|name| number(&pulse, name)), [264.0, 280.0, 392.0]);
     let edges = |bit, cycle, forward, most| {
-        let found = sure(simulation.edges(bit, cycle, forward, most));
+        let found = expect_ok(simulation.edges(bit, cycle, forward, most));
         let cycles: Vec<f64> = list(&found, "rows").iter().map(|row| number(row, "cycle")).collect();
         (cycles, get(&found, "more").is_truthy())
     };
@@ -271,11 +271,11 @@ fn edges_are_found_in_both_directions_and_columns_hold_them() {
 }
 
 #[wasm_bindgen_test]
-fn a_driver_that_cannot_follow_is_told_with_every_violation_in_its_place() {
-    assert!(sure(finished(&default_scenario()).timing()).is_null(), "no driver, no check");
+fn every_timing_violation_of_a_driver_is_listed_with_its_cycle() {
+    assert!(expect_ok(finished(&default_scenario()).timing()).is_null(), "no driver, no check");
     let simulation = preset("driver-timing-broken");
-    assert_eq!(number(&list(&sure(simulation.summary()), "controllers")[0], "violations"), 131.0);
-    let timing = sure(simulation.timing());
+    assert_eq!(number(&list(&expect_ok(simulation.summary()), "controllers")[0], "violations"), 131.0);
+    let timing = expect_ok(simulation.timing());
     assert_eq!((text(&timing, "driver").as_str(), number(&timing, "total")), ("drv8825", 131.0));
     let rules = list(&timing, "rules");
     let totals: Vec<(String, f64, f64)> = rules
@@ -310,16 +310,16 @@ fn a_driver_that_cannot_follow_is_told_with_every_violation_in_its_place() {
     ] {
         assert_eq!(simulation.next_violation(cycle, forward), expected, "{cycle}, forward {forward}");
     }
-    let listed = sure(drivers()).unchecked_into::<js_sys::Array>().to_vec();
+    let listed = expect_ok(drivers()).unchecked_into::<js_sys::Array>().to_vec();
     assert!(listed.iter().any(
         |sheet| text(sheet, "id") == "drv8825" && number(&get(sheet, "rules"), "step_high_ns") == 1900.0
     ));
 }
 
 #[wasm_bindgen_test]
-fn frames_and_replies_are_told_in_words_and_the_host_says_how_it_ended() {
+fn frames_and_replies_are_explained_and_the_host_reports_its_outcome() {
     let simulation = preset("framed-link");
-    let summary = sure(simulation.summary());
+    let summary = expect_ok(simulation.summary());
     assert!(get(&summary, "framed").is_truthy());
     let load = number(&summary, "line_load");
     assert!(load > 0.1 && load < 1.0, "{load}");
@@ -350,22 +350,22 @@ fn frames_and_replies_are_told_in_words_and_the_host_says_how_it_ended() {
 
     // The frame's eight ticks, one after another, from its first to its last.
     let (start, end) = (number(&rows[4], "tick_start_cycle"), number(&rows[4], "tick_end_cycle"));
-    let ticks = list(&sure(simulation.ticks_in(start, end - 1.0, 100)), "rows");
+    let ticks = list(&expect_ok(simulation.ticks_in(start, end - 1.0, 100)), "rows");
     assert_eq!(ticks.len(), 8);
     assert!(ticks.iter().all(|tick| number(tick, "row") == 4.0));
     assert_eq!(number(&ticks[0], "start_cycle"), start);
     assert_eq!(number(&ticks[7], "end_cycle"), end);
-    assert!(get(&sure(simulation.ticks_in(start, end - 1.0, 7)), "more").is_truthy());
+    assert!(get(&expect_ok(simulation.ticks_in(start, end - 1.0, 7)), "more").is_truthy());
     // The reply is on the line while the first of these ticks runs.
     let (start, end) = (number(&rows[5], "start_cycle"), number(&rows[5], "end_cycle"));
     assert!(start > number(&rows[4], "tick_start_cycle"));
-    let touching = list(&sure(simulation.packets_in(start, end, 9)), "rows");
+    let touching = list(&expect_ok(simulation.packets_in(start, end, 9)), "rows");
     let indices: Vec<f64> = touching.iter().map(|row| number(row, "index")).collect();
     assert_eq!(indices, [5.0]);
-    assert!(list(&sure(simulation.packets_in(0.0, end, 2)), "rows").is_empty(), "more than two");
+    assert!(list(&expect_ok(simulation.packets_in(0.0, end, 2)), "rows").is_empty(), "more than two");
 
     // The reply's bytes one after another, and what they mean.
-    let decoded = sure(simulation.decoded(start, end, 99, 99));
+    let decoded = expect_ok(simulation.decoded(start, end, 99, 99));
     let tx = get(&decoded, "tx");
     let bytes = list(&tx, "bytes");
     let spoken: Vec<String> =
@@ -379,13 +379,13 @@ fn frames_and_replies_are_told_in_words_and_the_host_says_how_it_ended() {
     for wanted in ["address: 1", "kind: ACK TICKS", "state: MOVING", "delimiter: 00"] {
         assert!(fields.iter().any(|field| field == wanted), "no `{wanted}` in {fields:?}");
     }
-    assert!(get(&sure(simulation.decoded(0.0, end, 3, 3)), "more").is_truthy());
+    assert!(get(&expect_ok(simulation.decoded(0.0, end, 3, 3)), "more").is_truthy());
 }
 
 #[wasm_bindgen_test]
-fn the_views_look_at_the_controller_that_is_selected() {
+fn the_views_show_the_selected_controller() {
     let mut simulation = preset("four-controllers-framed");
-    let summary = sure(simulation.summary());
+    let summary = expect_ok(simulation.summary());
     let controllers = list(&summary, "controllers");
     let addresses: Vec<f64> = controllers.iter().map(|controller| number(controller, "address")).collect();
     assert_eq!(addresses, [1.0, 2.0, 3.0, 4.0]);
@@ -409,7 +409,7 @@ fn the_views_look_at_the_controller_that_is_selected() {
         assert!(foreign.iter().all(|row| text(row, "outcome") == "another address"));
         // The others' frames name their own channels, and their replies are read too.
         assert!(foreign.iter().any(|row| text(row, "kind") == "reply"), "controller {index}");
-        let spectrum = sure(simulation.spectrum());
+        let spectrum = expect_ok(simulation.spectrum());
         assert!(get(&spectrum, "ideal").is_object(), "controller {index}");
     }
     simulation.select(4);
@@ -418,11 +418,11 @@ fn the_views_look_at_the_controller_that_is_selected() {
 }
 
 #[wasm_bindgen_test]
-fn noise_is_repeated_away_and_another_seed_is_another_run() {
+fn retries_overcome_noise_and_another_seed_changes_the_run() {
     let digest =
-        |simulation: &Simulation| text(&list(&sure(simulation.summary()), "controllers")[0], "digest");
+        |simulation: &Simulation| text(&list(&expect_ok(simulation.summary()), "controllers")[0], "digest");
     let noisy = preset("framed-noisy-line");
-    let summary = sure(noisy.summary());
+    let summary = expect_ok(noisy.summary());
     let host = get(&summary, "host");
     assert!(number(&host, "repeated") > 0.0);
     assert_eq!(text(&list(&host, "jobs")[0], "progress"), "done");
@@ -442,59 +442,59 @@ fn noise_is_repeated_away_and_another_seed_is_another_run() {
 }
 
 #[wasm_bindgen_test]
-fn a_host_that_gives_up_says_why() {
+fn a_host_that_gives_up_reports_the_cause() {
     let silent = finished(r#"{"line":{"protocol":"framed","noise":{"lost_bytes_ppm":1000000}}}"#);
-    let job = &list(&get(&sure(silent.summary()), "host"), "jobs")[0];
+    let job = &list(&get(&expect_ok(silent.summary()), "host"), "jobs")[0];
     assert_eq!((text(job, "progress").as_str(), text(job, "why").as_str()), ("given_up", "no reply"));
     let stop =
         r#"{"line":{"protocol":"framed"},"source":{"line":{"sends":[{"start_cycle":2000,"frame":"ff05"}]}}}"#;
-    let summary = sure(finished(stop).summary());
+    let summary = expect_ok(finished(stop).summary());
     assert!(get(&summary, "host").is_null(), "nobody waits for replies to a script");
     assert_eq!(text(&list(&summary, "controllers")[0], "state"), "STOPPED");
 }
 
 #[wasm_bindgen_test]
-fn measures_are_those_of_the_axis_that_is_asked_for() {
+fn measures_are_of_the_requested_axis() {
     let scenario = ValidatedScenario::new(
         r#"{"bus":{"channels":2},"source":{"motion":{"axes":[{},{"moves":[{"constant":{"distance":{"steps":100}}}]}]}}}"#,
     );
     let counts = |measures: &JsValue| number(&get(measures, "counts"), "due");
-    assert_eq!([0, 1].map(|axis| counts(&sure(scenario.measures(0, axis)))), [3200.0, 100.0]);
-    let measures = sure(scenario.measures(0, 1));
+    assert_eq!([0, 1].map(|axis| counts(&expect_ok(scenario.measures(0, axis)))), [3200.0, 100.0]);
+    let measures = expect_ok(scenario.measures(0, 1));
     assert!((number(&get(&measures, "steps"), "rms_steps") - 0.288_675).abs() < 1e-5);
     assert!(get(&measures, "sine").is_null() && get(&get(&measures, "duration"), "requested_s").is_null());
-    assert!(sure(scenario.measures(0, 2)).is_null(), "there is no third axis");
+    assert!(expect_ok(scenario.measures(0, 2)).is_null(), "there is no third axis");
 }
 
 #[wasm_bindgen_test]
-fn a_plant_is_told_of_the_motor_that_is_asked_for() {
+fn the_plant_columns_are_of_the_requested_motor() {
     let simulation = finished(r#"{"bus":{"channels":2},"plant":{},"source":{"motion":{"axes":[{},{}]}}}"#);
-    let report = sure(simulation.plant());
+    let report = expect_ok(simulation.plant());
     let motors = list(&report, "motors");
     assert_eq!((motors.len(), text(&motors[1], "verdict").as_str()), (2, "follows"));
-    let end = number(&sure(simulation.summary()), "end_cycle");
-    let curves = there(simulation.plant_curves(1, 0.0, end, 300));
+    let end = number(&expect_ok(simulation.summary()), "end_cycle");
+    let curves = expect_some(simulation.plant_curves(1, 0.0, end, 300));
     let greatest = numbers(&get(&curves, "rotor"), "max");
     assert!(greatest.len() > 300 && greatest.len() <= 602, "{}", greatest.len());
-    let at_end = there(simulation.plant_at(1, end));
+    let at_end = expect_some(simulation.plant_at(1, end));
     assert_eq!(number(&at_end, "rotor"), number(&motors[1], "rotor_full_steps"));
     assert!(simulation.plant_curves(2, 0.0, end, 300).is_none(), "there is no third motor");
-    assert!(sure(finished("{}").plant()).is_null());
+    assert!(expect_ok(finished("{}").plant()).is_null());
 }
 
 #[wasm_bindgen_test]
-fn a_motor_of_the_list_takes_the_place_of_the_scenarios() {
-    let sheets = sure(sheets());
+fn a_motor_of_the_list_replaces_the_scenarios_motor() {
+    let sheets = expect_ok(sheets());
     assert!(list(&sheets, "motors").len() >= 8 && list(&sheets, "drives").len() >= 4);
     let made = with_motor("{}", "17hs4401", "a4988");
     assert!(made.contains("\"plant\"") && made.contains("\"resistance_ohm\": 1.5"), "{made}");
     let scenario = ValidatedScenario::new(&made);
-    assert!(list(&sure(scenario.check()), "problems").is_empty());
+    assert!(list(&expect_ok(scenario.check()), "problems").is_empty());
     // As `stepscope limits` has it for the default motor.
     let usual = ValidatedScenario::new(r#"{"plant":{}}"#);
-    let rate = there(sure(usual.start_stop(0, 0)));
+    let rate = expect_some(expect_ok(usual.start_stop(0, 0)));
     assert!((rate - 34_700.0).abs() < 400.0, "{rate}");
     assert!(usual.start_stop(0, 1).is_err() && ValidatedScenario::new("{}").start_stop(0, 0).is_err());
-    let map = sure(usual.resonance(0, 0, 100.0, 50.0, 3));
+    let map = expect_ok(usual.resonance(0, 0, 100.0, 50.0, 3));
     assert_eq!(numbers(&map, "oscillation").len(), 3);
 }

@@ -20,19 +20,19 @@ fn every_case(check: impl Fn(&Case) -> Result<(), String>) {
 }
 
 #[wasm_bindgen_test]
-fn every_case_gives_its_trace_at_both_speeds() {
+fn every_golden_case_has_its_trace_at_both_speeds() {
     every_case(Case::check);
 }
 
 #[wasm_bindgen_test]
-fn the_contracts_plant_digests_come_out() {
+fn plant_digests_match_the_contract() {
     let failures: Vec<String> = plant_cases().iter().filter_map(|case| case.check(true).err()).collect();
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 /// As the page's worker runs it, and with slices so small that many of them end amid a tick.
 #[wasm_bindgen_test]
-fn every_case_gives_its_digest_in_slices() {
+fn every_golden_case_has_its_digest_in_slices() {
     every_case(|case| {
         let mut simulation =
             ValidatedScenario::new(case.json()?).run().map_err(|_| format!("{}: refused", case.name))?;

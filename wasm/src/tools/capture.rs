@@ -95,8 +95,8 @@ pub fn sample_facts(id: &str) -> Result<JsValue, JsError> {
         file: &'static str,
         scenario: &'static str,
     }
-    let found = samples::sample(id).ok_or_else(|| JsError::new("no such recording"))?;
-    object(&SampleFacts { file: found.file, scenario: found.scenario })
+    let sample = samples::sample(id).ok_or_else(|| JsError::new("this sample recording does not exist"))?;
+    object(&SampleFacts { file: sample.file, scenario: sample.scenario })
 }
 
 /// Contents of a file.
@@ -144,11 +144,11 @@ struct PreviewOptions {
     to_s: Option<f64>,
 }
 
-/// The given map, or the proposed one without a valid map; and the error.
-fn map_of(capture: &Capture, given: Option<&str>) -> (String, Option<String>) {
-    let found = given.map(|map| ChannelMap::parse(map, capture)).transpose();
-    let error = found.as_ref().err().map(ToString::to_string);
-    let map = found.ok().flatten().unwrap_or_else(|| ChannelMap::proposed(capture));
+/// The user's map, or the proposed one without a valid map; and the error.
+fn map_of(capture: &Capture, user_map: Option<&str>) -> (String, Option<String>) {
+    let parsed = user_map.map(|map| ChannelMap::parse(map, capture)).transpose();
+    let error = parsed.as_ref().err().map(ToString::to_string);
+    let map = parsed.ok().flatten().unwrap_or_else(|| ChannelMap::proposed(capture));
     (map.to_text(capture), error)
 }
 
@@ -167,7 +167,7 @@ const fn field_of(error: &OpenError) -> &'static str {
 /// A remedy, with the fields of the dialog.
 fn in_fields(remedy: &Remedy) -> String {
     match remedy {
-        Remedy::BothEdges { .. } => "; for such a driver choose the signal “STEP, both edges”".to_owned(),
+        Remedy::BothEdges { .. } => "; for such a driver select the signal “STEP, both edges”".to_owned(),
         Remedy::OtherEdge { motor, inverted, .. } => {
             let check = if *inverted { "check" } else { "clear" };
             format!("; if the driver steps where it begins, {check} “Inverted” of STEP{motor}")
@@ -344,9 +344,9 @@ impl CaptureFile {
             speed_max: Vec<f64>,
         }
         let Some(options) = &self.options else { return Ok(JsValue::NULL) };
-        let found =
+        let overview =
             LoadedCapture::overview(&self.capture, options, channel, columns.min(MAX_COLUMNS) as usize)?;
-        object(&found.map(|Actual { position, speed }| Columns {
+        object(&overview.map(|Actual { position, speed }| Columns {
             position_min: position.min,
             position_max: position.max,
             speed_min: speed.min,
@@ -427,26 +427,26 @@ impl CaptureFile {
             #[serde(flatten)]
             beside: EventComparison,
         }
-        let rows = |found: &EventComparison| {
-            let listed = found.differences.listed.iter();
+        let rows = |comparison: &EventComparison| {
+            let listed = comparison.differences.listed.iter();
             let row = |difference: &Difference| Row {
-                text: difference.to_text(found.kind),
+                text: difference.to_text(comparison.kind),
                 recorded_s: difference.recorded_s,
             };
             listed.map(row).collect()
         };
-        let found = self.loaded.as_ref().and_then(|loaded| {
+        let comparison = self.loaded.as_ref().and_then(|loaded| {
             let own = loaded.events(channel);
             let model =
                 Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, own.kind, channel, baud);
             let within = Tolerance::cycle(own.clock_hz, model.clock_hz);
             // If the recording lacks that step, the first common one is aligned.
             let aligned = own.compare(&model, Some(aligned), within);
-            let mut found = aligned.or_else(|| own.compare(&model, None, within))?;
-            found.differences.listed.truncate(MAX_DIFFERENCES);
-            Some(Comparison { rows: rows(&found), beside: found })
+            let mut comparison = aligned.or_else(|| own.compare(&model, None, within))?;
+            comparison.differences.listed.truncate(MAX_DIFFERENCES);
+            Some(Comparison { rows: rows(&comparison), beside: comparison })
         });
-        object(&found)
+        object(&comparison)
     }
 
     /// At most `most` records of 16 bytes: cycle and levels, little-endian. Empty without levels.
@@ -475,7 +475,7 @@ mod tests {
     };
 
     #[test]
-    fn channels_of_the_given_map_are_read_first() {
+    fn the_channels_of_a_map_are_read_first() {
         let names: Vec<String> = (0..100).map(|at| format!("top.W{at}")).collect();
         let table = format!("Time [s],{}\n0{}\n", names.join(","), ",1".repeat(100));
         let typed = "STEP0=W98,DIR0=!top.W99";
@@ -499,7 +499,7 @@ mod tests {
         let options = OpenOptions { map: Some("STEP0=Channel 0".into()), ..OpenOptions::default() };
         let loaded = LoadedCapture::new(capture, &options).expect("steps");
         let notes: Vec<String> = loaded.notes.iter().map(note).collect();
-        let expected = "makes 39 steps of it; for such a driver choose the signal “STEP, both edges”";
+        let expected = "makes 39 steps of it; for such a driver select the signal “STEP, both edges”";
         assert!(notes.iter().any(|note| note.ends_with(expected)), "{notes:?}");
         assert_eq!(
             in_fields(&Remedy::OtherEdge { motor: 1, channel: "#0".into(), inverted: true }),

@@ -18,7 +18,7 @@ use wasm_bindgen::prelude::*;
 
 /// A row without its curves.
 #[derive(Default, Serialize)]
-struct Shown {
+struct ComparedMotion {
     name: &'static str,
     /// Why it is impossible.
     why: Option<String>,
@@ -39,7 +39,7 @@ struct Torque {
     least: Option<Moment>,
 }
 
-impl Shown {
+impl ComparedMotion {
     fn of(row: &Row) -> Self {
         let name = row.candidate.name();
         match &row.cost {
@@ -57,7 +57,7 @@ impl Shown {
                 acceleration_jump: cost.peaks.acceleration_jump,
                 time_error_s: cost.time_error_s,
                 last_step_s: cost.last_step_s,
-                torque: cost.torque.map(|found| Torque { is_met: found.is_met, least: found.min_margin }),
+                torque: cost.torque.map(|torque| Torque { is_met: torque.is_met, least: torque.min_margin }),
             },
         }
     }
@@ -65,7 +65,7 @@ impl Shown {
 
 #[wasm_bindgen]
 impl ValidatedScenario {
-    /// A move of an axis as every kind of motion with ramps of `ramp_s`, one row each (`Shown`): with its `move` in JSON and
+    /// A move of an axis as every kind of motion with ramps of `ramp_s` (`ComparedMotion`), with its `move` in JSON and
     /// its curve as columns `at_speed` and `at_acceleration` at `points` times. Empty for a move without distance.
     ///
     /// # Errors
@@ -82,13 +82,13 @@ impl ValidatedScenario {
         let rows = Array::new();
         let Some(request) = Request::of(selected.axis, selected.plan, index, ramp_s) else { return Ok(rows) };
         for row in compare(&request) {
-            let shown: Object = object(&Shown::of(&row))?.into();
-            let wanted =
-                JSON::parse(&to_json(&row.requested_move)).map_err(|_| JsError::new("a move is not JSON"))?;
-            field(&shown, "move", &wanted);
-            let sampled = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            let shown: Object = object(&ComparedMotion::of(&row))?.into();
+            let motion = JSON::parse(&to_json(&row.requested_move))
+                .map_err(|_| JsError::new("invalid JSON of a move"))?;
+            field(&shown, "move", &motion);
+            let sampled = |quantity: &dyn Fn(f64) -> f64| -> Vec<f64> {
                 let time = |index| request.duration_s * f64::from(index) / f64::from(points.max(2) - 1);
-                (0..points).map(|index| of(time(index))).collect()
+                (0..points).map(|index| quantity(time(index))).collect()
             };
             if let Some([PlannedMove { profile: curve, .. }]) = row.plan.as_ref().map(|plan| plan.moves()) {
                 let within = |t| t <= curve.duration_s();

@@ -126,11 +126,11 @@ impl ValidatedScenario {
         let found: Vec<_> =
             rates.map(|rate| resonance(&setup, rate)).collect::<Result<_, _>>().map_err(refused)?;
         let result = Object::new();
-        numbers(&result, "oscillation", &found.iter().map(|one| one.peak_to_peak).collect::<Vec<_>>());
+        numbers(&result, "oscillation", &found.iter().map(|rate| rate.peak_to_peak).collect::<Vec<_>>());
         numbers(
             &result,
             "loses",
-            &found.iter().map(|one| f64::from(u8::from(one.loses_steps))).collect::<Vec<_>>(),
+            &found.iter().map(|rate| f64::from(u8::from(rate.loses_steps))).collect::<Vec<_>>(),
         );
         Ok(result)
     }
@@ -183,7 +183,7 @@ impl ValidatedScenario {
         let (Some(log), Some(report), Some(recording)) =
             (logs.get(controller), PlantReport::of(experiment, &run, controller), recordings.get(controller))
         else {
-            return Err(JsError::new("the scenario has no plant"));
+            return Err(JsError::new("the scenario has no motors; add them under Motors and supply"));
         };
         let hz = f64::from(experiment.config().clock_hz());
         let window = CycleWindow { from: 0, to: run.cycles().0, columns };
@@ -209,7 +209,7 @@ impl ValidatedScenario {
         let experiment = self.0.experiment().map_err(listed)?;
         let setup =
             experiment.plants().and_then(|plants| plants.setups.get(controller)?.single_motor(channel));
-        setup.ok_or_else(|| JsError::new("the scenario's plant has no such motor"))
+        setup.ok_or_else(|| JsError::new("this channel has no motor; select another channel"))
     }
 }
 

@@ -67,13 +67,13 @@ pub fn sine_best(from: f64, to: f64, order: u16, sensor: Option<f64>) -> Object 
 #[must_use]
 pub fn sine_vertices(segments: usize, free: bool, order: u16) -> Option<Object> {
     let freedom = if free { Freedom::Free } else { Freedom::OnCurve };
-    let found = optimum(segments, freedom, order)?;
+    let best = optimum(segments, freedom, order)?;
     let result = Object::new();
-    let angles: Vec<f64> = found.vertices.iter().map(|vertex| vertex.angle.to_degrees()).collect();
-    let heights: Vec<f64> = found.vertices.iter().map(|vertex| vertex.height).collect();
+    let angles: Vec<f64> = best.vertices.iter().map(|vertex| vertex.angle.to_degrees()).collect();
+    let heights: Vec<f64> = best.vertices.iter().map(|vertex| vertex.height).collect();
     numbers(&result, "angle_deg", &angles);
     numbers(&result, "height", &heights);
-    field(&result, "thd", &found.distortion.position.into());
+    field(&result, "thd", &best.distortion.position.into());
     Some(result)
 }
 
@@ -86,11 +86,11 @@ impl ValidatedScenario {
     /// If the scenario has problems, or no such axis.
     pub fn sine_segments(&self, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
         let SelectedAxis { plan, .. } = self.axis(controller, axis)?;
-        let found = plan.moves().iter().find_map(|planned| match &planned.profile {
+        let sine = plan.moves().iter().find_map(|planned| match &planned.profile {
             Profile::SineSegments(sine) => Some(sine),
             _ => None,
         });
-        let Some(sine) = found else { return Ok(None) };
+        let Some(sine) = sine else { return Ok(None) };
         let result = Object::new();
         let put = |name: &str, of: &dyn Fn(&Segment) -> f64| {
             numbers(&result, name, &sine.segments().iter().map(of).collect::<Vec<f64>>());

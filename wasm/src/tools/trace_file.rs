@@ -20,11 +20,11 @@ struct TraceComparison {
     start_cycle: u64,
     end_cycle: u64,
     goes_on: bool,
-    difference: Option<Differs>,
+    difference: Option<TraceDifference>,
 }
 
 #[derive(Serialize)]
-struct Differs {
+struct TraceDifference {
     line: u64,
     cycle: u64,
     /// Name, level in the file and level in the run of each different signal.
@@ -75,7 +75,7 @@ impl TraceFile {
             start_cycle: outcome.range.0.0,
             end_cycle: outcome.range.1.0,
             goes_on: outcome.run_continues,
-            difference: outcome.difference.map(|difference| Differs {
+            difference: outcome.difference.map(|difference| TraceDifference {
                 line: difference.line,
                 cycle: difference.cycle.0,
                 signals: (0..36)

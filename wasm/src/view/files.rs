@@ -41,7 +41,7 @@ impl Simulation {
         let last = self.run.cycles().0.saturating_sub(1);
         let (start, end) = ((start.max(0.0) as u64).min(last), (end.max(0.0) as u64).min(last));
         let index = controller as usize;
-        let none = || JsError::new("no such controller");
+        let none = || JsError::new("the run does not have this controller");
         let recording = &self.recordings.get(index).ok_or_else(none)?.recording;
         let config = config(&self.experiment, index);
         let from = from as usize;

@@ -65,34 +65,34 @@ impl Simulation {
         object(&progress)
     }
 
-    /// The visible rows at positions `from..from + count` (`Page`), with the `rank` of matches. Times are in `unit`.
+    /// The visible rows at positions `from..from + count` (`PacketRows`), with the `rank` of matches; times in `unit`.
     pub fn packets(&self, from: u32, count: u32) -> Result<JsValue, JsError> {
         #[derive(Serialize)]
-        struct Placed {
+        struct FilteredRow {
             position: usize,
             rank: Option<usize>,
             #[serde(flatten)]
             row: Row,
         }
         #[derive(Serialize)]
-        struct Page {
+        struct PacketRows {
             total: usize,
             shown: usize,
             matches: usize,
             unit: &'static str,
-            rows: Vec<Placed>,
+            rows: Vec<FilteredRow>,
         }
         let table = self.table();
-        let placed = |position| {
+        let filtered_row = |position| {
             let row = table.row(self.filter.row(position)?)?;
-            Some(Placed { position, rank: self.filter.rank(position), row })
+            Some(FilteredRow { position, rank: self.filter.rank(position), row })
         };
-        object(&Page {
+        object(&PacketRows {
             total: table.len(),
             shown: self.filter.shown(table.len()),
             matches: self.filter.matches(),
             unit: table.scale().unit,
-            rows: (from as usize..).take(count as usize).map_while(placed).collect(),
+            rows: (from as usize..).take(count as usize).map_while(filtered_row).collect(),
         })
     }
 

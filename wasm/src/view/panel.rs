@@ -11,10 +11,10 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Discards everything.
-struct Nowhere;
+/// Discards all records.
+struct NullSink;
 
-impl Sink for Nowhere {
+impl Sink for NullSink {
     fn record(&mut self, _: Record) {}
 }
 
@@ -38,8 +38,8 @@ impl Simulation {
         numbers(&result, "writes", &writes.collect::<Vec<_>>());
         let mut inputs = Vec::new();
         for &(at, event) in &self.panels.inputs {
-            if let Event::Input { controller: whose, input, level } = event
-                && usize::from(whose) == controller
+            if let Event::Input { controller: owner, input, level } = event
+                && usize::from(owner) == controller
             {
                 inputs.extend([at.0 as f64, f64::from(input), f64::from(u8::from(level))]);
             }
@@ -54,7 +54,7 @@ impl Simulation {
     pub fn panel_at(&self, controller: usize, cycle: f64) -> Option<Vec<f64>> {
         let cycle = Instant(cycle.max(0.0) as u64);
         let mut machine = self.panels.last_stop(cycle)?.clone();
-        machine.run(cycle, &mut Nowhere);
+        machine.run(cycle, &mut NullSink);
         let numbers = machine.numbers(controller);
         Some(vec![
             machine.word(controller)?.0 as f64,

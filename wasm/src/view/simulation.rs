@@ -53,12 +53,12 @@ pub struct Simulation {
 }
 
 /// Records a run and the inputs of panels.
-struct Watched {
+struct RunRecorder {
     run: RunSink,
     inputs: Vec<(Instant, Event)>,
 }
 
-impl Sink for Watched {
+impl Sink for RunRecorder {
     fn record(&mut self, record: Record) {
         self.run.record(record);
     }
@@ -163,7 +163,7 @@ impl Simulation {
         if done {
             self.finish();
         }
-        let records = self.recordings.iter().map(|one| one.recording.digest.records()).sum();
+        let records = self.recordings.iter().map(|recorded| recorded.recording.digest.records()).sum();
         progress(&self.experiment, &self.run, done, records)
     }
 
@@ -192,22 +192,22 @@ impl Simulation {
 impl Simulation {
     fn run_slice(&mut self, max_records: u32) {
         self.panels.save_stop(self.run.stand_alone());
-        let watched = |one: &mut ControllerRecording| Watched {
-            run: RunSink { recording: take(&mut one.recording), timing: one.timing.take() },
+        let recorder = |recorded: &mut ControllerRecording| RunRecorder {
+            run: RunSink { recording: take(&mut recorded.recording), timing: recorded.timing.take() },
             inputs: Vec::new(),
         };
-        let mut watched: Vec<Watched> = self.recordings.iter_mut().map(watched).collect();
-        let mut logs: Vec<_> = self.recordings.iter_mut().map(|one| one.plant.as_mut()).collect();
-        let done = advance(&self.experiment, &mut self.run, max_records, &mut watched, &mut logs);
-        for (one, watched) in self.recordings.iter_mut().zip(watched) {
-            let Watched { run: RunSink { recording, timing }, inputs } = watched;
+        let mut recorders: Vec<RunRecorder> = self.recordings.iter_mut().map(recorder).collect();
+        let mut logs: Vec<_> = self.recordings.iter_mut().map(|recorded| recorded.plant.as_mut()).collect();
+        let done = advance(&self.experiment, &mut self.run, max_records, &mut recorders, &mut logs);
+        for (recorded, recorder) in self.recordings.iter_mut().zip(recorders) {
+            let RunRecorder { run: RunSink { recording, timing }, inputs } = recorder;
             self.panels.inputs.extend(inputs);
-            one.changes.extend(&recording.trace);
-            (one.recording, one.timing) = (recording, timing);
+            recorded.changes.extend(&recording.trace);
+            (recorded.recording, recorded.timing) = (recording, timing);
         }
-        for (index, one) in self.recordings.iter_mut().enumerate() {
-            if let (Some(log), Some(plant)) = (&mut one.plant, self.run.plant(index)) {
-                log.snapshot(plant, one.recording.trace.len());
+        for (index, recorded) in self.recordings.iter_mut().enumerate() {
+            if let (Some(log), Some(plant)) = (&mut recorded.plant, self.run.plant(index)) {
+                log.snapshot(plant, recorded.recording.trace.len());
             }
         }
         if done && let (Some(recorded), Some(first)) = (&mut self.recorded, self.recordings.first_mut()) {
@@ -233,11 +233,11 @@ impl Simulation {
 
     /// Sorts packets and sets recorded replies.
     fn finish(&mut self) {
-        let recorded = self.replies.as_mut().map(take);
-        for (index, one) in self.recordings.iter_mut().enumerate() {
-            let packets = &mut one.recording.packets;
+        let recorded_replies = self.replies.as_mut().map(take);
+        for (index, recorded) in self.recordings.iter_mut().enumerate() {
+            let packets = &mut recorded.recording.packets;
             packets.finish();
-            if let Some(bytes) = &recorded {
+            if let Some(bytes) = &recorded_replies {
                 replies::replace(bytes, &self.experiment, &self.run, index, packets);
             }
         }

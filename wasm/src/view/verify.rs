@@ -11,32 +11,32 @@ use wasm_bindgen::prelude::*;
 
 /// A position in a run.
 #[derive(Serialize)]
-struct Place {
+struct EdgePosition {
     edge: u64,
     cycle: u64,
 }
 
-impl From<Mark> for Place {
+impl From<Mark> for EdgePosition {
     fn from(mark: Mark) -> Self {
         Self { edge: mark.edges, cycle: mark.cycle.0 }
     }
 }
 
-/// The result.
+/// The result of a comparison with the run of the sender.
 #[derive(Serialize, Default)]
-struct Verdict {
+struct RunComparison {
     /// Why it cannot be compared.
     error: Option<String>,
     same: bool,
-    /// Of all controllers.
+    /// Edges of all controllers.
     edges: u64,
     /// The version of the sender, if different.
     version: Option<String>,
     own_version: &'static str,
     /// The controller that differs.
     controller: usize,
-    after: Option<Place>,
-    until: Option<Place>,
+    after: Option<EdgePosition>,
+    until: Option<EdgePosition>,
     /// `this` or `other` run ends within the other.
     shorter: Option<&'static str>,
 }
@@ -54,18 +54,18 @@ impl Simulation {
 
     /// Compares the run with part `d` of a link. The first difference is between `after` and `until`.
     pub fn verify(&self, text: &str) -> Result<JsValue, JsError> {
-        object(&self.verdict(text))
+        object(&self.comparison(text))
     }
 }
 
 impl Simulation {
-    fn verdict(&self, text: &str) -> Verdict {
+    fn comparison(&self, text: &str) -> RunComparison {
         let sent = match RunFingerprint::parse(text) {
             Ok(fingerprint) => fingerprint,
-            Err(error) => return Verdict { error: Some(error.to_string()), ..Verdict::default() },
+            Err(error) => return RunComparison { error: Some(error.to_string()), ..Default::default() },
         };
         let version = sent.other_version().map(str::to_owned);
-        let verdict = Verdict { version, own_version: VERSION, ..Verdict::default() };
+        let comparison = RunComparison { version, own_version: VERSION, ..Default::default() };
         let own = self.recordings.len();
         let mut checks = match sent.checks(own) {
             Ok(checks) => checks,
@@ -73,21 +73,21 @@ impl Simulation {
                 let error = format!(
                     "the link has digests of {controllers} controllers, but this experiment has {own}; they are ignored"
                 );
-                return Verdict { same: true, error: Some(error), ..verdict };
+                return RunComparison { same: true, error: Some(error), ..comparison };
             }
         };
         for (check, recorded) in checks.iter_mut().zip(&self.recordings) {
             recorded.recording.trace.iter().for_each(|record| check.record(*record));
         }
         match Verification::of(checks) {
-            Verification::Same { edges } => Verdict { same: true, edges, ..verdict },
+            Verification::Same { edges } => RunComparison { same: true, edges, ..comparison },
             Verification::Differs { controller, after, until, shorter } => {
                 let shorter = shorter.map(|shorter| match shorter {
                     Shorter::This => "this",
                     Shorter::Other => "other",
                 });
                 let (after, until) = (Some(after.into()), Some(until.into()));
-                Verdict { controller, after, until, shorter, ..verdict }
+                RunComparison { controller, after, until, shorter, ..comparison }
             }
         }
     }

@@ -67,24 +67,24 @@ pub(super) fn dashes(lines: &[Vec<Point>], dash: f64) -> Vec<Vec<Point>> {
     let mut cut = Vec::new();
     for points in lines {
         let mut open: Vec<Point> = points.first().copied().into_iter().collect();
-        // Rest of the current dash or gap.
-        let (mut left, mut drawn) = (dash, true);
+        // Remaining length of the current dash or gap.
+        let (mut rest, mut drawn) = (dash, true);
         for pair in points.windows(2) {
             let [mut from, to] = [pair[0], pair[1]];
-            let mut way = distance(from, to);
-            while way > left {
-                let part = left / way;
+            let mut length = distance(from, to);
+            while length > rest {
+                let part = rest / length;
                 from = (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part);
-                way -= left;
+                length -= rest;
                 if drawn {
                     open.push(from);
                     cut.push(core::mem::take(&mut open));
                 } else {
                     open.push(from);
                 }
-                (left, drawn) = (dash, !drawn);
+                (rest, drawn) = (dash, !drawn);
             }
-            left -= way;
+            rest -= length;
             if drawn {
                 open.push(to);
             }
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_staircase_keeps_every_corner_and_a_spike_its_tip() {
+    fn a_thinned_staircase_keeps_its_corners_and_a_spike_its_tip() {
         let rows: &[(&[Point], &[Point])] = &[
             (&[], &[]),
             (&[(0.0, 1.0)], &[(0.0, 1.0)]),
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn dashes_are_as_long_as_their_gaps_and_go_round_corners() {
+    fn dashes_are_as_long_as_their_gaps_and_continue_at_corners() {
         let line = vec![(0.0, 0.0), (10.0, 0.0), (10.0, 11.0)];
         let cut = dashes(&[line, vec![(20.0, 5.0)]], 4.0);
         let expected = [
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_column_that_holds_much_is_visited_twice_and_a_gap_ends_the_line() {
+    fn a_dense_column_is_drawn_as_a_band_and_a_gap_ends_the_line() {
         let frame =
             Frame { x: (0.0, 4.0), y: (0.0, 128.0), corner: (5.0, 130.0), width: 40.0, height: 128.0 };
         let (x, nan) = ([0.0, 1.0, 2.0, 3.0], f64::NAN);
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_where_its_values_are_to_a_fraction_of_a_pixel() {
+    fn a_line_is_within_a_fraction_of_a_pixel_of_its_values() {
         let frame = Frame { x: (0.0, 4.0), y: (0.0, 10.0), corner: (5.0, 130.0), width: 40.0, height: 100.0 };
         let lines = line(&frame, &[0.0, 0.5, 1.0, 2.0, 3.0], &[0.01, 0.02, 0.05, f64::NAN, 77.0]);
         assert_eq!(lines, [vec![(5.0, 129.9), (10.0, 129.8), (15.0, 129.5)], vec![(35.0, 30.0)]]);

@@ -13,24 +13,24 @@ pub(super) struct Ticks<'a> {
 }
 
 impl<'a> Ticks<'a> {
-    /// At most `wanted` ticks, but at least two if `most` allows.
-    pub(super) fn new(axis: &'a Axis, wanted: usize, most: usize) -> Self {
+    /// At most `target` ticks, but at least two if `max_count` allows.
+    pub(super) fn new(axis: &'a Axis, target: usize, max_count: usize) -> Self {
         const PREFIXES: [(f64, &str); 7] =
             [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
-        let step = step(axis, wanted, most);
+        let step = step(axis, target, max_count);
         let mut values: Vec<f64> =
             (0..count(axis, step)).map(|k| (first(axis, step) + k as f64) * step).collect();
-        if values.len() > most.max(2) {
+        if values.len() > max_count.max(2) {
             // Only the outer ones fit.
             values = values.first().into_iter().chain(values.last()).copied().collect();
         }
         if !axis.ticks.is_empty() {
             values.clone_from(&axis.ticks);
         }
-        let largest = axis.min.abs().max(axis.max.abs());
+        let max_value = axis.min.abs().max(axis.max.abs());
         let (scale, prefix) = PREFIXES
             .into_iter()
-            .find(|(scale, _)| axis.prefix && largest >= *scale * 0.9999)
+            .find(|(scale, _)| axis.prefix && max_value >= *scale * 0.9999)
             // Without a unit 0.2 is better than 200m.
             .filter(|(scale, _)| *scale >= 1.0 || !axis.unit.is_empty())
             .unwrap_or((1.0, ""));
@@ -58,8 +58,8 @@ impl<'a> Ticks<'a> {
     }
 }
 
-/// Distance of the ticks: the smallest with at most `wanted` ticks, or a smaller one if that leaves a single tick.
-fn step(axis: &Axis, wanted: usize, most: usize) -> f64 {
+/// Distance of the ticks: the smallest with at most `target` ticks, or a smaller one if that leaves a single tick.
+fn step(axis: &Axis, target: usize, max_count: usize) -> f64 {
     let span = axis.max - axis.min;
     let mut power = 1.0;
     while power > span {
@@ -75,8 +75,8 @@ fn step(axis: &Axis, wanted: usize, most: usize) -> f64 {
     let mut chosen = None;
     for step in finer {
         let count = count(axis, step);
-        let few = chosen.is_none_or(|chosen| self::count(axis, chosen) < 2);
-        if count <= wanted || (few && count <= most.max(5)) {
+        let is_single = chosen.is_none_or(|chosen| self::count(axis, chosen) < 2);
+        if count <= target || (is_single && count <= max_count.max(5)) {
             chosen = Some(step);
         } else {
             break;
@@ -119,17 +119,17 @@ mod tests {
     }
 
     #[test]
-    fn every_axis_has_two_ticks_or_more_and_none_has_too_many() {
-        for (wanted, most) in [(2, 2), (3, 6), (5, 8), (12, 15)] {
+    fn every_axis_has_at_least_two_and_not_too_many_ticks() {
+        for (target, max_count) in [(2, 2), (3, 6), (5, 8), (12, 15)] {
             for mantissa in 1..1000 {
                 let size = f64::from(mantissa) * 37.0;
                 for (min, max) in
                     [(0.0, size), (-1.08 * size, 1.08 * size), (-0.08 * size, size), (3.3 * size, 4.4 * size)]
                 {
                     let axis = axis(min, max, "");
-                    let ticks = Ticks::new(&axis, wanted, most);
+                    let ticks = Ticks::new(&axis, target, max_count);
                     let count = ticks.values.len();
-                    assert!((2..=most).contains(&count), "{min}..{max}, {wanted}: {:?}", ticks.values);
+                    assert!((2..=max_count).contains(&count), "{min}..{max}, {target}: {:?}", ticks.values);
                     assert!(
                         ticks.values.iter().all(|value| (min..=max).contains(value)),
                         "{:?}",
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_that_brings_its_ticks_has_those_and_their_labels() {
+    fn an_axis_with_own_ticks_uses_them_and_their_labels() {
         let axis = Axis { ticks: vec![-1.0, 0.5], labels: "100 mHz\n3.2 Hz".into(), ..axis(-1.2, 1.4, "Hz") };
         let found = Ticks::new(&axis, 6, 6);
         assert_eq!(found.values, [-1.0, 0.5]);
