@@ -94,7 +94,7 @@ fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
         );
         let distortions = [
             ("position", ideal.position.distortion, pulses.position.distortion),
-            ("acceleration filtered", filtered(&ideal), filtered(&pulses)),
+            ("filtered acceleration", filtered(&ideal), filtered(&pulses)),
         ];
         for (name, ideal, pulses) in distortions {
             let cells = cells(&page, "Distortion", name, 0).await?;
