@@ -1,4 +1,5 @@
 /** Fields of stand-alone controllers: warnings, and levels as choices between 0 and 1. */
+import { withLabels } from "./schema.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
 /** @typedef {import("./field.js").Field} Field */
@@ -13,7 +14,7 @@ export function withWarnings(path, fields) {
     also: (value, state) => {
       const at = `${path}.${each.key}`;
       const warning = state.validation?.warnings.find((/** @type {{path: string}} */ one) => one.path === at);
-      return warning?.message ?? each.also?.(value, state) ?? "";
+      return warning ? withLabels(warning.message) : (each.also?.(value, state) ?? "");
     },
   }));
 }

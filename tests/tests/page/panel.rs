@@ -148,7 +148,7 @@ fn what_is_to_be_done_next_is_told_and_where_a_move_never_comes_to_its_speed() -
         page.until(&format!("{WORDS}.startsWith('ALARM MEMORY · position lost')")).await?;
         page.until(&format!("{advice}.startsWith('The memory is invalid')")).await?;
         let speed = "source.standalone[0].groups[0].move.speed_hz";
-        page.until(&format!("document.querySelector(`[data-path='{speed}']`).closest('.field').querySelector('.also').textContent.includes('too short for 4000 Hz')")).await?;
+        page.until(&format!("document.querySelector(`[data-path='{speed}']`).closest('.field').querySelector('.also').textContent.includes('because 4000 Hz needs')")).await?;
         page.click("[data-input='clear']").await?;
         page.until(&format!("{advice}.startsWith('The position is lost')")).await?;
         // Homing is not set up: the button says so, and so does the log.
