@@ -268,7 +268,7 @@ fn a_recording_is_aligned_by_the_step_that_is_chosen_and_by_none_that_one_of_bot
         )
         .await?;
         for (step, why) in [
-            ("900", "The experiment has no step 900 (the first is 0); align by one that both have"),
+            ("900", "The experiment has no step 900 (the first is 0); use a step that both have"),
             ("250", "There is no step 250; 200 steps were recorded, numbered from 0; use one that both have"),
         ] {
             type_into(&page, "Aligned by step", step).await?;
