@@ -89,7 +89,10 @@ fn too_much_work_fills_the_form_and_waits_to_be_told_to_run() -> Result<()> {
         assert_eq!(distance.value, "2200000");
         // What would run has been asked of the engine before; one more question is answered after it.
         page.click("#share").await?;
-        page.until("document.getElementById('link-about').textContent.includes('the experiment has not run')").await?;
+        page.until(
+            "document.getElementById('link-about').textContent.includes('the experiment has not run')",
+        )
+        .await?;
         page.press("#link-text", "\u{e00c}").await?;
         page.ready().await?;
         let shown = page.shown().await?;
