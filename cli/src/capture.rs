@@ -29,7 +29,7 @@ use std::{
 use stepscope_core::{
     capture::{
         ChannelMap,
-        read::{self, Limits, Reading, Wanted},
+        read::{self, Limits, ReadOptions, Reading},
         samples::{SAMPLES, sample},
     },
     inspect::{
@@ -158,7 +158,7 @@ fn read(arguments: &Arguments, progress: &mut Progress) -> Result<Reading, Failu
     let failed = |error: io::Error| Failure::File(path.clone(), error);
     let limits = Limits::default();
     let channels = arguments.map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
-    let wanted = Wanted { channels, base: arguments.base };
+    let wanted = ReadOptions { channels, base: arguments.base };
     let mut piped = |input: &mut dyn Read| {
         let mut bytes = Vec::new();
         input.take(MAX_PIPED + 1).read_to_end(&mut bytes).map_err(failed)?;
@@ -166,7 +166,7 @@ fn read(arguments: &Arguments, progress: &mut Progress) -> Result<Reading, Failu
         if all > MAX_PIPED {
             return Err(Failure::TooLong(path.clone(), MAX_PIPED));
         }
-        Ok(read::read_wanted(Cursor::new(bytes), &limits, &wanted, &mut |read| {
+        Ok(read::read_with_options(Cursor::new(bytes), &limits, &wanted, &mut |read| {
             progress.update(read, all);
             true
         }))
@@ -197,7 +197,7 @@ fn read(arguments: &Arguments, progress: &mut Progress) -> Result<Reading, Failu
         return piped(&mut file);
     }
     let all = known.len();
-    Ok(read::read_wanted(BufReader::with_capacity(1 << 16, file), &limits, &wanted, &mut |read| {
+    Ok(read::read_with_options(BufReader::with_capacity(1 << 16, file), &limits, &wanted, &mut |read| {
         progress.update(read, all);
         true
     }))

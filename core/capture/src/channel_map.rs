@@ -160,40 +160,32 @@ pub enum MapError {
 
 impl fmt::Display for MapError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotAPair(given) => {
-                write!(
-                    f,
-                    "\"{given}\" is not a pair; use SIGNAL=CHANNEL, separated by commas, such as STEP0=CH1,DIR0=CH2"
-                )
-            }
-            Self::UnknownSignal(given) => {
-                write!(
-                    f,
-                    "{given} is not a signal; use STEP0 to STEP15, DIR0 to DIR15, EN, RX, TX or DE, or instead of STEP0: \
-                     DEDGE0 (a step at both edges), CW0 and CCW0, or A0 and B0 (an encoder)"
-                )
-            }
+        let text = match self {
+            Self::NotAPair(given) => format!(
+                "\"{given}\" is not a pair; use SIGNAL=CHANNEL, separated by commas, such as STEP0=CH1,DIR0=CH2"
+            ),
+            Self::UnknownSignal(given) => format!(
+                "{given} is not a signal; use STEP0 to STEP15, DIR0 to DIR15, EN, RX, TX or DE, or instead of STEP0: DEDGE0 (a \
+                 step at both edges), CW0 and CCW0, or A0 and B0 (an encoder)"
+            ),
             Self::UnknownChannel(given, channels) => {
-                write!(f, "there is no channel {given}; use one of {channels}")
+                format!("there is no channel {given}; use one of {channels}")
             }
             Self::AmbiguousChannel(given) => {
-                write!(f, "more than one channel is named {given}; use its number, #0 for the first")
+                format!("more than one channel is named {given}; use its number, #0 for the first")
             }
-            Self::DuplicateSignal(signal) => write!(f, "{signal} has two channels; remove one of them"),
+            Self::DuplicateSignal(signal) => format!("{signal} has two channels; remove one of them"),
             Self::ChannelInUse(channel, signal) => {
-                write!(f, "channel {channel} is already {signal}; only DIR signals can share a channel")
+                format!("channel {channel} is already {signal}; only DIR signals can share a channel")
             }
             Self::MissingPartner(signal, partner) => {
-                write!(
-                    f,
-                    "{signal} requires {partner}; add {partner}=CHANNEL, or use STEP instead of {signal}"
-                )
+                format!("{signal} requires {partner}; add {partner}=CHANNEL, or use STEP instead of {signal}")
             }
             Self::Conflict(signal, rival) => {
-                write!(f, "{signal} and {rival} exclude each other for one motor; remove one of them")
+                format!("{signal} and {rival} exclude each other for one motor; remove one of them")
             }
-        }
+        };
+        f.write_str(&text)
     }
 }
 

@@ -24,7 +24,7 @@ pub(crate) enum Kind {
 
 /// A signal in a channel's name.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Named {
+pub(crate) struct SignalName {
     pub(crate) kind: Kind,
     pub(crate) inverted: bool,
     /// The negative line of a pair, as in `PUL-`.
@@ -39,7 +39,7 @@ pub(crate) struct Named {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Meaning {
-    Signal(Named),
+    Signal(SignalName),
     /// Not a signal of a motor or its line.
     Other,
     Unknown,
@@ -110,7 +110,7 @@ struct Words<'w> {
 
 impl<'w> Words<'w> {
     fn new(words: &'w [String]) -> Self {
-        let is_encoder = words.iter().any(|word| ENCODER.contains(&letters(word)));
+        let is_encoder = words.iter().any(|word| ENCODER.contains(&without_number(word)));
         let phase = |word: &str| match word {
             "A" if is_encoder => Some(Kind::A),
             "B" if is_encoder => Some(Kind::B),
@@ -118,8 +118,8 @@ impl<'w> Words<'w> {
         };
         let mut found = Self::default();
         for word in words {
-            if let Some(kind) = phase(letters(word)) {
-                found.add(SignalWord { word: "PHASE", kind, axis: digits(word) });
+            if let Some(kind) = phase(without_number(word)) {
+                found.add(SignalWord { word: "PHASE", kind, axis: trailing_number(word) });
             } else if let Some(signal) = signal(word) {
                 found.add(signal);
             } else if let Some(signal) = word.strip_prefix('N').and_then(signal) {
@@ -173,13 +173,13 @@ impl<'w> Words<'w> {
 
 impl Meaning {
     /// The meaning of a name. `indexed`: a number at its beginning only counts the file's channels.
-    pub(crate) fn of(name: &str, indexed: bool) -> Self {
+    pub(crate) fn from_name(name: &str, indexed: bool) -> Self {
         let name = without_index(name, indexed);
         let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
-        let all = words(last);
+        let all = split_words(last);
         let has_word = |list: &[&str]| all.iter().any(|word| list.contains(&word.as_str()));
         let is_count = has_word(&["STEPS"]) && has_word(&["LEFT", "REMAINING", "TODO"]);
-        if is_count || all.iter().any(|word| OTHERS.split(' ').any(|other| other == letters(word))) {
+        if is_count || all.iter().any(|word| OTHERS.split(' ').any(|other| other == without_number(word))) {
             return Self::Other;
         }
         let words = Words::new(&all);
@@ -192,21 +192,21 @@ impl Meaning {
         let shared_axes = || (kind == Kind::Dir).then(|| axes_of(&words.others)).flatten();
         let axis = words.axis.clone().or_else(shared_axes).or_else(|| axis_of(&words.others));
         let axis = axis.or_else(|| axis_of_scope(scope)).unwrap_or_default();
-        Self::Signal(Named { kind, inverted, is_negative, is_pulse, axis, scope: scope.to_owned() })
+        Self::Signal(SignalName { kind, inverted, is_negative, is_pulse, axis, scope: scope.to_owned() })
     }
 
     /// The signal in a name of one word, with the rest of the name as axis.
-    pub(crate) fn joined(name: &str) -> Option<Named> {
+    pub(crate) fn from_single_word(name: &str) -> Option<SignalName> {
         let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
         let upper = last.to_ascii_uppercase();
         let (word, kind) = JOINED.into_iter().find(|(word, _)| upper.matches(word).count() == 1)?;
         let axis = upper.replacen(word, "", 1);
         let scope = scope.to_owned();
-        Some(Named { kind, inverted: false, is_negative: false, is_pulse: false, axis, scope })
+        Some(SignalName { kind, inverted: false, is_negative: false, is_pulse: false, axis, scope })
     }
 
     pub(crate) fn is_recognized(name: &str) -> bool {
-        matches!(Self::of(name, false), Self::Signal(Named { kind, .. }) if kind != Kind::Clock)
+        matches!(Self::from_name(name, false), Self::Signal(SignalName { kind, .. }) if kind != Kind::Clock)
     }
 }
 
@@ -241,12 +241,12 @@ fn without_index(name: &str, indexed: bool) -> &str {
 
 /// Splits a name into words in capitals: at marks, and where upper and lower case or digits and letters change, unless
 /// the whole is a known word.
-fn words(name: &str) -> Vec<String> {
+fn split_words(name: &str) -> Vec<String> {
     let mut all = Vec::new();
     for part in name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty()) {
         let upper = part.to_ascii_uppercase();
         let is_low = upper.strip_prefix('N').is_some_and(|word| signal(word).is_some());
-        if is_low || signal(&upper).is_some() || find(&PHASES, letters(&upper)).is_some() {
+        if is_low || signal(&upper).is_some() || find(&PHASES, without_number(&upper)).is_some() {
             all.push(upper);
             continue;
         }
@@ -271,12 +271,12 @@ fn words(name: &str) -> Vec<String> {
 }
 
 /// A word without the number at its end.
-fn letters(word: &str) -> &str {
+fn without_number(word: &str) -> &str {
     word.trim_end_matches(|c: char| c.is_ascii_digit())
 }
 
 /// Whether `axes`, such as `XY`, includes `axis`: several motors share that DIR.
-pub(crate) fn is_of_several(axes: &str, axis: &str) -> bool {
+pub(crate) fn includes_axis(axes: &str, axis: &str) -> bool {
     axes.len() > 1
         && axes.chars().all(|letter| AXES.contains(letter))
         && axis.len() == 1
@@ -285,28 +285,28 @@ pub(crate) fn is_of_several(axes: &str, axis: &str) -> bool {
 
 /// Number of words that two names have in common, without pin numbers.
 pub(crate) fn shared_words(name: &str, other: &str) -> usize {
-    let others = words(other);
-    let is_pin = |word: &str| PINS.contains(&letters(word)) && digits(word).is_some();
-    words(name).iter().filter(|word| !is_pin(word) && others.contains(word)).count()
+    let others = split_words(other);
+    let is_pin = |word: &str| PINS.contains(&without_number(word)) && trailing_number(word).is_some();
+    split_words(name).iter().filter(|word| !is_pin(word) && others.contains(word)).count()
 }
 
 /// The number at the end of a word.
-fn digits(word: &str) -> Option<String> {
-    let digits = word.get(letters(word).len()..)?;
+fn trailing_number(word: &str) -> Option<String> {
+    let digits = word.get(without_number(word).len()..)?;
     (!digits.is_empty()).then(|| digits.to_owned())
 }
 
 /// The signal of a word such as `STEP`, `STEP1`, `STEPPIN`, `XYDIR` or `XSTEP`.
 fn signal(given: &str) -> Option<SignalWord> {
-    let text = letters(given);
+    let text = without_number(given);
     if let Some((word, kind)) = find(&WORDS, text) {
-        return Some(SignalWord { word, kind, axis: digits(given) });
+        return Some(SignalWord { word, kind, axis: trailing_number(given) });
     }
     if ENCODER.contains(&text) {
         return None;
     }
     if let Some(signal) = text.strip_suffix("PIN").and_then(signal) {
-        let axis = signal.axis.or_else(|| digits(given));
+        let axis = signal.axis.or_else(|| trailing_number(given));
         return Some(SignalWord { axis, ..signal });
     }
     let shared_axes = text
@@ -316,7 +316,7 @@ fn signal(given: &str) -> Option<SignalWord> {
     if let Some(axes) = shared_axes {
         return Some(SignalWord { word: "DIR", kind: Kind::Dir, axis: Some(axes.to_owned()) });
     }
-    with_axis_letter(text, &digits(given).unwrap_or_default())
+    with_axis_letter(text, &trailing_number(given).unwrap_or_default())
 }
 
 /// The signal of a word with an axis letter before or after it: `XSTEP`, `DIRX`.
@@ -340,12 +340,12 @@ fn with_axis_letter(text: &str, number: &str) -> Option<SignalWord> {
 }
 
 fn is_axis(word: &str) -> bool {
-    let text = letters(word);
+    let text = without_number(word);
     text.is_empty() || text.len() == 1 && AXES.contains(text)
 }
 
 fn is_noise(word: &str) -> bool {
-    NOISE.contains(&word) || ENCODER.contains(&word) || PINS.contains(&letters(word))
+    NOISE.contains(&word) || ENCODER.contains(&word) || PINS.contains(&without_number(word))
 }
 
 /// Several letters of axes, as in `DIR X/Y`.
@@ -360,8 +360,9 @@ fn axis_of(words: &[&str]) -> Option<String> {
         return Some((*axis).to_owned());
     }
     // `MOTOR1`, `AXIS2`, `ENC1`.
-    let numbered = |word: &&&str| NOISE.contains(&letters(word)) || ENCODER.contains(&letters(word));
-    if let Some(number) = words.iter().filter(numbered).find_map(|word| digits(word)) {
+    let numbered =
+        |word: &&&str| NOISE.contains(&without_number(word)) || ENCODER.contains(&without_number(word));
+    if let Some(number) = words.iter().filter(numbered).find_map(|word| trailing_number(word)) {
         return Some(number);
     }
     let names: Vec<&str> = words.iter().copied().filter(|word| !is_noise(word)).collect();
@@ -374,5 +375,5 @@ fn axis_of_scope(scope: &str) -> Option<String> {
     if last.is_empty() {
         return None;
     }
-    if is_axis(last) { Some(last.to_owned()) } else { digits(last) }
+    if is_axis(last) { Some(last.to_owned()) } else { trailing_number(last) }
 }

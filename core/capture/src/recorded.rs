@@ -69,13 +69,13 @@ impl fmt::Display for Rounding {
         }
         match self.merged {
             0 => {}
-            1 => f.write_str("; 1 change is in the cycle of another one")?,
-            count => write!(f, "; {count} changes are in the cycle of another one")?,
+            1 => f.write_str("; 1 change shares its cycle with the previous one")?,
+            count => write!(f, "; {count} changes share their cycle with the previous one")?,
         }
         match self.lost {
             0 => Ok(()),
-            1 => f.write_str("; 1 pulse within a cycle is lost: use a faster clock"),
-            count => write!(f, "; {count} pulses within a cycle are lost: use a faster clock"),
+            1 => f.write_str("; 1 pulse within a cycle is lost; use a faster clock"),
+            count => write!(f, "; {count} pulses within a cycle are lost; use a faster clock"),
         }
     }
 }
@@ -203,7 +203,7 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
             self.count_merged(ended.levels, now.levels);
             return None;
         }
-        self.end(ended, falling, cycle - ended.cycle.0)
+        self.finish_record(ended, falling, cycle - ended.cycle.0)
     }
 
     fn cycle(&mut self, tick: u64) -> u64 {
@@ -240,7 +240,7 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
 
     /// Returns a record if its levels are new, and sets the end of its generated pulses: halfway to the next record, or
     /// after the maximum width.
-    fn end(&mut self, record: Record, falling: u64, cycles_to_next: u64) -> Option<Record> {
+    fn finish_record(&mut self, record: Record, falling: u64, cycles_to_next: u64) -> Option<Record> {
         let is_new = self.last.replace(record.levels) != Some(record.levels);
         if falling != 0 && cycles_to_next > 1 {
             let width = (cycles_to_next / 2).min(u64::from(self.clock_hz) / MAX_WIDTH_HZ).max(1);
@@ -267,7 +267,7 @@ impl<I: Iterator<Item = Change>> Iterator for Records<'_, I> {
         }
         let last = self.pending.take()?;
         let falling = core::mem::take(&mut self.high);
-        self.end(last, falling, u64::MAX)
+        self.finish_record(last, falling, u64::MAX)
     }
 }
 

@@ -1,7 +1,7 @@
-//! Small files of each kind, and what is read of them.
+//! Small files of each format, with their expected captures.
 
-use crate::common::{check, read_bytes, told};
-use stepscope_capture::read::{Limits, Reading, Wanted, read, read_wanted};
+use crate::common::{check, read_bytes, summary};
+use stepscope_capture::read::{Limits, ReadOptions, Reading, read, read_with_options};
 
 #[test]
 fn dumps_of_any_program_are_read() {
@@ -18,33 +18,33 @@ fn dumps_of_any_program_are_read() {
              $var wire 1 ! alias $end $upscope $end\r\n$enddefinitions $end\r\n\
              $dumpvars 0! 0!! $end\r\n#0\r\n#5\r\n1!\r\n0!\r\n#6 1!! 1! #7 1! #9\r\n\r\n",
             "Vcd 1/10000000 [top.a.STEP top.DIR top.alias] 0:0 6:7 end 9\n\
-             - 1 pulse starts and ends at one time of the file, lost (top.a.STEP); record times more finely",
+             - 1 pulse starts and ends at the same time and is lost (top.a.STEP); record with a finer unit of time",
         ),
         // Vectors, short values, a range that falls, one that rises, one beside its name, a single bit of one.
         (
             "$timescale 10 ps $end $var wire 4 a bus [3:0] $end $var wire 2 b up[4:5] $end $var wire 3 c plain $end\n\
              $var wire 1 d one [7] $end $enddefinitions $end #0 b0 a b01 b b111 c 1d #3 bx1 a b1z0 c b0 d #4 1a",
             "Vcd 1/100000000000 [bus[0] bus[1] bus[2] bus[3] up[5] up[4] plain[0] plain[1] plain[2] one[7]] \
-             0:3d0 3:111 end 4\n- 4 levels are neither high nor low (x or z), taken as low",
+             0:3d0 3:111 end 4\n- 4 levels are neither high nor low (x or z), read as low",
         ),
         // Unknown levels are low; while a dump is off nothing is known.
         (
             "$timescale 1 s $end $var wire 1 a A $end $var tri 1 b B $end $enddefinitions $end\n\
              #0 $dumpvars xa zb $end #1 1a 1b #2 $dumpoff xa xb $end #8 $dumpon 1a 0b $end #9",
-            "Vcd 1/1 [A B] 0:0 1:3 8:1 end 9\n- 2 levels are neither high nor low (x or z), taken as low\n\
-             - the dump was switched off once ($dumpoff); the levels are taken to stay",
+            "Vcd 1/1 [A B] 0:0 1:3 8:1 end 9\n- 2 levels are neither high nor low (x or z), read as low\n\
+             - the dump was switched off once ($dumpoff); the levels are read as unchanged",
         ),
-        // What is no line is left out, its values too; what a program says of itself stands before.
+        // Variables that are not lines are skipped, and so is text before the first keyword.
         (
             "META samplerate: 1000\n$var real 64 r speed $end $var string 1 s text $end $var wire 1 w W $end\n\
              $var integer 32 i n $end $enddefinitions $end #0 r1.5 r sHello s b101 i #1 1w",
-            "Vcd [W] 0:0 1:1 end 1\n- variables that are no lines: speed (real), text (string), n (integer)",
+            "Vcd [W] 0:0 1:1 end 1\n- skipped variables that are neither wires nor registers: speed (real), text (string), n (integer)",
         ),
         // Strings with blanks, comments among the values.
         (
             "$var wire 1 ! A $end $var string 1 # s $end $enddefinitions $end\n#0 0!\n$comment 1! x $end\n\
              #1\nsIDLE STATE 0 #\n1!\n#2\ns #\n0!\n",
-            "Vcd [A] 0:0 1:1 2:0 end 2\n- variables that are no lines: s (string)",
+            "Vcd [A] 0:0 1:1 2:0 end 2\n- skipped variables that are neither wires nor registers: s (string)",
         ),
         // Long time scales and short ones.
         ("$timescale 100 s $end $var wire 1 a A $end $enddefinitions $end #1 1a", "Vcd 100/1 [A] 1:1 end 1"),
@@ -65,36 +65,39 @@ fn broken_dumps_have_a_line_and_their_valid_part() {
     check(&[
         (
             "$var wire 1 a A $end $enddefinitions $end\n#5 1a\n#7 0a\n#6 1a",
-            "Vcd [A] 5:1 7:0 end 7\n! line 4: time 6 comes after time 7; times must rise: dump again, or delete what comes twice",
+            "Vcd [A] 5:1 7:0 end 7\n! line 4: time 6 follows time 7; dump again or delete the repeated part",
         ),
         (
             "$timescale 1 hour $end",
-            "Vcd [] end 0\n! line 1: $timescale “1hour” is not a time scale; it is a whole number and s, ms, us, ns, ps or fs",
+            "Vcd [] end 0\n! line 1: $timescale “1hour” is not a time scale; use a whole number and s, ms, us, ns, ps or fs",
         ),
         (
             "$var wire 1 a A $end",
-            "Vcd [A] end 0\n! line 1: the file ends before $enddefinitions; it is truncated",
+            "Vcd [A] end 0\n! line 1: the file ends before $enddefinitions; it is truncated: record or copy it again",
         ),
-        ("$comment never\nended", "Vcd [] end 0\n! line 2: the file ends within a command; it is truncated"),
+        (
+            "$comment never\nended",
+            "Vcd [] end 0\n! line 2: the file ends within a command; it is truncated: record or copy it again",
+        ),
         (
             "$var wire 1 a A $end $enddefinitions $end #0 1a #1 b0",
-            "Vcd [A] 0:1 end 1\n! line 1: the file ends within a value change; it is truncated",
+            "Vcd [A] 0:1 end 1\n! line 1: the file ends within a value change; it is truncated: record or copy it again",
         ),
         (
             "$enddefinitions $end #0",
-            "Vcd [] end 0\n! line 1: the dump has no wire and no register; dump the lines of the motor, such as STEP and DIR",
+            "Vcd [] end 0\n! line 1: the dump has no wire or register; dump signals such as STEP and DIR",
         ),
         (
             "$var wire 1 a A $end $enddefinitions $end #0 q",
-            "Vcd [A] 0:0 end 0\n! line 1: “q” is neither a time (#), a value (0, 1, x, z, b, r, s) nor a keyword ($)",
+            "Vcd [A] 0:0 end 0\n! line 1: “q” is neither a time (#), a value (0, 1, x, z, b, r, s) nor a keyword ($); record or copy the dump again",
         ),
         (
             "$var wire 1 a A $end $enddefinitions $end #1x",
-            "Vcd [A] end 0\n! line 1: #“1x” is not a time; it is a whole number of less than 2^64",
+            "Vcd [A] end 0\n! line 1: #“1x” is not a time; use a whole number of less than 2^64",
         ),
         (
             "$var wire a A $end",
-            "Vcd [] end 0\n! line 1: $var “wire a A ” is not whole: type, size, code and name are its words",
+            "Vcd [] end 0\n! line 1: $var “wire a A ” is incomplete; use a type, size, code and name",
         ),
     ]);
 }
@@ -115,8 +118,8 @@ fn tables_of_levels_are_read() {
         (
             "Time [s],A\n-0.5,1\n-1e-05,0\n0,X\n0.000000001,1\n",
             "SaleaeCsv 1/1000000000 [A] 0:1 499990000:0 500000001:1 end 500000001\n\
-             - the first time is “-0.5”: it is taken as 0, and all others count from it\n\
-             - 1 level is neither high nor low (X: no data), taken as low",
+             - the first time is “-0.5” and is read as 0; all other times are relative to it\n\
+             - 1 level is neither high nor low (X: no data), read as low",
         ),
         // Fifteen places of which three are zeros.
         (
@@ -127,7 +130,7 @@ fn tables_of_levels_are_read() {
         (
             "Time [s],A\n2026-01-31T23:59:59.999999999+00:00,0\n2026-02-01T00:00:00.000000001+00:00,1\n",
             "SaleaeCsv 1/1000000000 [A] 0:0 2:1 end 2\n\
-             - the first time is “2026-01-31T23:59:59.999999999+00:00”: it is taken as 0, and all others count from it",
+             - the first time is “2026-01-31T23:59:59.999999999+00:00” and is read as 0; all other times are relative to it",
         ),
         ("t_us;A;B\n0;0;0\n2.5;1;0\n", "LevelsCsv 1/10000000 [A B] 0:0 25:1 end 25"),
         // Ours.
@@ -135,34 +138,34 @@ fn tables_of_levels_are_read() {
             "cycle,time_s,STEP0,DIR0,EN,RX,TX,DE\n0,0,0,0,1,1,1,0\n24,0.0000015,1,0,1,1,1,0\n",
             "EdgesCsv [STEP0 DIR0 EN RX TX DE] 0:1c 24:1d end 24",
         ),
-        // What goes wrong.
+        // Errors.
         (
             "Time [s],A\n0.1,0\n0.05,1\n",
-            "SaleaeCsv 1/100 [A] 10:0 end 10\n! line 3: the time “0.05” is before the one of the row before; times must rise: sort the rows by time",
+            "SaleaeCsv 1/100 [A] 10:0 end 10\n! line 3: the time “0.05” is before the time of the previous row; sort the rows by time",
         ),
         (
             "Time [s],A,B\n0.1,0,1\n0.2,0\n",
-            "SaleaeCsv 1/10 [A B] 1:2 end 1\n! line 3: B is “”; a level is 0 or 1: export digital channels only",
+            "SaleaeCsv 1/10 [A B] 1:2 end 1\n! line 3: B is “”, not 0 or 1; export digital channels only",
         ),
         (
             "Time [s],A\n0.1,0\n0.2,3.29\n",
-            "SaleaeCsv 1/10 [A] 1:0 end 1\n! line 3: A is “3.29”; a level is 0 or 1: export digital channels only, or write an analog one as 0 below the threshold of its input and 1 above it",
+            "SaleaeCsv 1/10 [A] 1:0 end 1\n! line 3: A is “3.29”, not 0 or 1; export digital channels only, or convert analog channels to 0 and 1 by a threshold",
         ),
         (
             "Time [s],A\n0.1,0,0\n",
-            "SaleaeCsv [A] end 0\n! line 2: more fields than the header names, which are 2",
+            "SaleaeCsv [A] end 0\n! line 2: 3 fields, but the header has 2; use the same number",
         ),
         (
             "Time [s],A\nnow,0\n",
-            "SaleaeCsv [A] end 0\n! line 2: “now” is not a time; give a number, such as 0.00125 or 1.25e-3",
+            "SaleaeCsv [A] end 0\n! line 2: “now” is not a time; use a number such as 0.00125 or 1.25e-3",
         ),
         (
             "Time [s],A\n1e30,0\n",
-            "SaleaeCsv 1/1 [A] end 0\n! line 2: the time “1e30” is too long for 64 bits; give times since the recording's beginning",
+            "SaleaeCsv 1/1 [A] end 0\n! line 2: the time “1e30” does not fit into 64 bits; use times relative to the start of the recording",
         ),
         (
             "Time [s],A\n",
-            "SaleaeCsv [A] end 0\n! line 1: the table has a head and no rows; record again, or export the whole of the recording",
+            "SaleaeCsv [A] end 0\n! line 1: the table has no rows after its header; record again or export the complete recording",
         ),
     ]);
 }
@@ -178,19 +181,19 @@ fn traces_of_stepscope_are_read() {
         ),
         (
             "0 700000000\n5 700000001\n5 700000000\n",
-            "0:700000000 5:700000001 end 5\n! line 3: cycle 5 comes after cycle 5; cycles must rise: sort the records",
+            "0:700000000 5:700000001 end 5\n! line 3: cycle 5 follows cycle 5; sort the records by cycle",
         ),
         (
             "0 700000000\n5 1700000001\n",
-            "0:700000000 end 0\n! line 2: “5 1700000001” has more than 36 signals; is it a trace of Stepscope?",
+            "0:700000000 end 0\n! line 2: “5 1700000001” has more than 36 signals; use a trace of Stepscope",
         ),
         (
             "0 700000000\n5\n",
-            "0:700000000 end 0\n! line 2: “5” is not a record; it is a cycle and the levels, both in hexadecimal, such as 1f4a 700000001",
+            "0:700000000 end 0\n! line 2: “5” is not a record; use a cycle and the levels in hexadecimal, such as 1f4a 700000001",
         ),
     ];
     for (text, expected) in rows {
-        assert_eq!(told(&read_bytes(text)), format!("Trace [{names}] {expected}"), "{text:?}");
+        assert_eq!(summary(&read_bytes(text)), format!("Trace [{names}] {expected}"), "{text:?}");
     }
 }
 
@@ -236,23 +239,23 @@ fn tables_of_samples_are_read() {
         ("microseconds,logic\n1,0\n5,1\n", "SigrokCsv 1/1000000 [D0] 0:0 4:1 end 4"),
         (
             "; Channels (1/1): A\nMETA samplerate: 1000000\nsamples,logic\n0,0\n0,1\n0,0\n",
-            "SigrokCsv 1/1000000 [A] 0:0 1:1 2:0 end 2\n- the column of times, which has no unit: each row is taken as the next sample",
+            "SigrokCsv 1/1000000 [A] 0:0 1:1 2:0 end 2\n- the time column has no unit and is skipped: each row is read as one sample",
         ),
         // Analog channels.
         (
             "; CSV generated by libsigrok 0.5.2\n; Channels (3/13): D0, D1, A0\n; Samplerate: 2 kHz\n\
              microseconds,logic,logic,V DC\n500,1,0,-10\n1000,0,1,2.7e-43\n",
-            "SigrokCsv 1/2000 [D0 D1] 0:1 1:2 end 1\n- analog channels: A0",
+            "SigrokCsv 1/2000 [D0 D1] 0:1 1:2 end 1\n- skipped analog channels: A0",
         ),
         // sigrok-cli prints analog values into the same file.
         (
             "; CSV generated by libsigrok 0.5.2\n; Channels (2/13): A, B\nA0: -10.00 V DC\nlogic,logic\n0,0\nA0: 2.7 V DC\n0,1\n",
             "SigrokCsv [A B] 0:0 1:2 end 1",
         ),
-        // What goes wrong.
+        // Errors.
         (
             "; Channels (2/2): A, B\n0,0\n0,2\n",
-            "SigrokCsv [A B] 0:0 end 0\n! line 3: B is “2”; a level is 0 or 1: export digital channels only, or write an analog one as 0 below the threshold of its input and 1 above it",
+            "SigrokCsv [A B] 0:0 end 0\n! line 3: B is “2”, not 0 or 1; export digital channels only, or convert analog channels to 0 and 1 by a threshold",
         ),
         (
             "; Channels (2/2): A, B\n; Samplerate: 1 MHz\n",
@@ -260,11 +263,11 @@ fn tables_of_samples_are_read() {
         ),
         (
             "; Channels (1/1): A\n; Samplerate: 1 MHz\nmicroseconds,logic\n5,0\n4,1\n",
-            "SigrokCsv 1/1000000 [A] 0:0 end 0\n! line 5: the time 4 is before the one of the row before; times must rise: export again",
+            "SigrokCsv 1/1000000 [A] 0:0 end 0\n! line 5: the time 4 is before the time of the previous row; export again",
         ),
         (
             "; Channels (2/2): A, B\n0,0\n0,1,1\n",
-            "SigrokCsv [A B] 0:0 end 0\n! line 3: “0,1,1” has more fields than the rows before, which have 2",
+            "SigrokCsv [A B] 0:0 end 0\n! line 3: “0,1,1” has more fields than the rows before; use 2 in each row",
         ),
     ]);
 }
@@ -280,8 +283,8 @@ fn decoded_bytes_are_read() {
         (
             "name,type,start_time,duration,\"data\",\"error\"\nS,\"data\",-1e-3,1e-4,0x01,\nS,data,0,1e-4,0x02,\"framing\"\n\
              S,error,1e-3,1e-4,,x\n",
-            "SaleaeBytes 1/1000 [S] 0:0:01 1:0:02! end 2\n- the first time is “-1e-3”: it is taken as 0, and all others count from it\n\
-             - rows that are no bytes: error",
+            "SaleaeBytes 1/1000 [S] 0:0:01 1:0:02! end 2\n- the first time is “-1e-3” and is read as 0; all other times are relative to it\n\
+             - skipped rows without bytes: error",
         ),
         (
             "Time [s],Value,Parity Error,Framing Error\n0.001250000000000,0x55,,\n0.001350000000000,U (0x55),,Error\n",
@@ -289,15 +292,15 @@ fn decoded_bytes_are_read() {
         ),
         (
             "name,type,start_time,duration,data\nS,data,0.1,1,0x100\n",
-            "SaleaeBytes 1/10 [] end 1\n! line 2: “0x100” is not a byte; export the data in hexadecimal, as 0x55, or decimal, from 0 to 255",
+            "SaleaeBytes 1/10 [] end 1\n! line 2: “0x100” is not a byte; use hexadecimal (0x55) or decimal (0 to 255) data",
         ),
         (
             "name,type,start_time,duration,data\n\"S,data,0.1,1,0x10\n",
-            "SaleaeBytes [] end 0\n! line 2: a quotation mark is opened and not closed in this line",
+            "SaleaeBytes [] end 0\n! line 2: a quotation mark is not closed in this line; add the missing one",
         ),
         (
             "name,type,start_time,duration,data\nS,data,0.1\n",
-            "SaleaeBytes [] end 0\n! line 2: “S,data,0.1” has 3 fields; the head names more: is the row whole?",
+            "SaleaeBytes [] end 0\n! line 2: “S,data,0.1” has 3 fields, fewer than the header; export again, the row is incomplete",
         ),
     ]);
 }
@@ -325,15 +328,15 @@ fn bytes_in_hexadecimal_are_read() {
         ),
         (
             "55 AA\n12.5us 55\n",
-            "HexBytes [bytes] 0:0:55 1:0:aa end 1\n! line 2: “12.5us 55” has a time, and the lines before have none; give each line a time, or none",
+            "HexBytes [bytes] 0:0:55 1:0:aa end 1\n! line 2: “12.5us 55” has a time, but earlier lines have none; use a time on each line or on none",
         ),
         (
             "55 AA\n5G\n",
-            "HexBytes [bytes] 0:0:55 1:0:aa end 1\n! line 2: “5G” is not a byte; give each as two hexadecimal digits, with or without 0x, such as 55 AA 0x01",
+            "HexBytes [bytes] 0:0:55 1:0:aa end 1\n! line 2: “5G” is not a byte; use two hexadecimal digits per byte, such as 55 AA 0x01",
         ),
         (
             "55 AA\n555\n",
-            "HexBytes [bytes] 0:0:55 1:0:aa end 1\n! line 2: “555” is not a byte; give each as two hexadecimal digits, with or without 0x, such as 55 AA 0x01",
+            "HexBytes [bytes] 0:0:55 1:0:aa end 1\n! line 2: “555” is not a byte; use two hexadecimal digits per byte, such as 55 AA 0x01",
         ),
     ]);
 }
@@ -357,14 +360,13 @@ fn tables_of_levels_of_other_programs_are_read() {
         ("time_s;A\n0,5;0\n0,75;1\n", "LevelsCsv 1/100 [A] 50:0 75:1 end 75"),
         (
             "time_s,A\n0,5,0\n0,75,1\n",
-            "LevelsCsv [A] end 0\n! line 2: “0,5,0” has one field more than the head of the table names, as with a decimal \
-             comma; export with decimal points, or with semicolons between the fields",
+            "LevelsCsv [A] end 0\n! line 2: “0,5,0” has one field more than the header, probably because of a decimal comma; use decimal points, or semicolons between fields",
         ),
         // WaveForms: comments and a time before the trigger.
         (
             "#Digilent WaveForms Logic Analyzer\n#Sample rate: 1e+06Hz\n\nTime (s),DIO 0,DIO 1\n-0.005,0,1\n-0.004,1,1\n",
             "LevelsCsv 1/1000 [DIO 0 DIO 1] 0:2 1:3 end 1\n\
-             - the first time is “-0.005”: it is taken as 0, and all others count from it",
+             - the first time is “-0.005” and is read as 0; all other times are relative to it",
         ),
         // KingstVIS, sample numbers with and without a rate, and a time beside them.
         (
@@ -386,7 +388,7 @@ fn tables_of_levels_of_other_programs_are_read() {
         (
             "Timestamp,STEP\n12:00:00.5,0\n12:00:00.75,1\n",
             "LevelsCsv 1/100 [STEP] 0:0 25:1 end 25\n\
-             - the first time is “12:00:00.5”: it is taken as 0, and all others count from it",
+             - the first time is “12:00:00.5” and is read as 0; all other times are relative to it",
         ),
         // Whole numbers without a unit are ticks of a length that is asked for.
         ("Timestamp,STEP\n0,0\n1000,1\n", "LevelsCsv [STEP] 0:0 1000:1 end 1000"),
@@ -394,22 +396,21 @@ fn tables_of_levels_of_other_programs_are_read() {
         (
             "0,0,1\n1000,1,1\n1005,0,1\n",
             "LevelsCsv [D0 D1] 0:2 1000:3 1005:2 end 1005\n\
-             - the table does not name its columns: the first is taken as the time, each other as a channel",
+             - the table has no column names: the first column is read as the time, all others as channels",
         ),
         (
             "Time (s),CH1\n0,0.02\n0.1,3.28\n",
-            "LevelsCsv [CH1] end 0\n! line 2: CH1 is “0.02”; a level is 0 or 1: export digital channels only, or write an \
-             analog one as 0 below the threshold of its input and 1 above it",
+            "LevelsCsv [CH1] end 0\n! line 2: CH1 is “0.02”, not 0 or 1; export digital channels only, or convert analog channels to 0 and 1 by a threshold",
         ),
     ]);
 }
 
 #[test]
-fn dumps_of_bytes_are_read_without_offsets_and_texts() {
+fn offsets_and_text_of_hex_dumps_are_not_bytes() {
     let sixteen = "0:0:44 1:0:45 2:0:41 3:0:44 4:0:42 5:0:45 6:0:45 7:0:46 8:0:43 9:0:41 10:0:46 11:0:45 12:0:30 13:0:31 \
         14:0:32 15:0:33 end 15";
     let whole = format!("HexDump [bytes] {sixteen}");
-    let words = "is written in words, whose byte order depends on the machine; dump single bytes: hexdump -C, xxd -g1, or \
+    let words = "contains words, whose byte order depends on the machine; dump single bytes: hexdump -C, xxd -g1, or \
         od -A x -t x1";
     check(&[
         // hexdump -C, od -Ax -t x1, od -t x1z, xxd -g1, xxd, a debugger.
@@ -441,7 +442,7 @@ fn dumps_of_bytes_are_read_without_offsets_and_texts() {
         (
             "0000000 01 01 01 01 01 01 01 01\n*\n0000030\n",
             "HexDump [bytes] 0:0:01 1:0:01 2:0:01 3:0:01 4:0:01 5:0:01 6:0:01 7:0:01 end 7\n\
-             ! line 3: the offset “0000030” after * may be hexadecimal, octal or decimal: dump without *, by od -v or hexdump -v",
+             ! line 3: the offset “0000030” after * may be hexadecimal, octal or decimal; dump without *: od -v or hexdump -v",
         ),
         // What is refused: words, offsets that do not follow, a text of other bytes.
         (
@@ -454,8 +455,7 @@ fn dumps_of_bytes_are_read_without_offsets_and_texts() {
         ),
         (
             "00000000: 44414544 46454542  DEADBEEF\n",
-            "HexDump [bytes] end 0\n! line 1: the text of “44414544 46454542  DEADBEEF” does not fit its bytes; is their order \
-             changed?",
+            "HexDump [bytes] end 0\n! line 1: the text of “44414544 46454542  DEADBEEF” does not match its bytes; use a dump of single bytes in order (hexdump -C, xxd -g1)",
         ),
         (
             "00000000: 01020304 05060708  ........\n",
@@ -464,12 +464,11 @@ fn dumps_of_bytes_are_read_without_offsets_and_texts() {
         (
             "00000000  44 45  |DE|\n00000004  41  |A|\n",
             "HexDump [bytes] 0:0:44 1:0:45 end 1\n! line 2: the offset “00000004” does not follow “00000000” and its 2 bytes; \
-             rows are missing or damaged: dump again",
+             dump again: rows are missing or damaged",
         ),
         (
             "00000000: 44 45  DE\n00000002: 44 45  DX\n",
-            "HexDump [bytes] 0:0:44 1:0:45 end 1\n! line 2: “DX” is not a byte; give each as two hexadecimal digits, with or \
-             without 0x, such as 55 AA 0x01",
+            "HexDump [bytes] 0:0:44 1:0:45 end 1\n! line 2: “DX” is not a byte; use two hexadecimal digits per byte, such as 55 AA 0x01",
         ),
     ]);
 }
@@ -477,7 +476,7 @@ fn dumps_of_bytes_are_read_without_offsets_and_texts() {
 #[test]
 fn logs_with_a_time_per_line_are_read() {
     let first = |time: &str| {
-        format!("\n- the first time is “{time}”: it is taken as 0, and all others count from it")
+        format!("\n- the first time is “{time}” and is read as 0; all other times are relative to it")
     };
     check(&[
         (
@@ -491,7 +490,7 @@ fn logs_with_a_time_per_line_are_read() {
             "2026-11-26 12:00:00,123456 RX: 55 AA\n2026-11-26 12:00:00,123457 TX: 01\n",
             &format!(
                 "SerialLog 1/1000000 [RX TX] 0:0:55 0:0:aa 1:1:01 end 1{}\n\
-                 - RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX",
+                 - RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
                 first("2026-11-26 12:00:00,123456 RX: 55 AA")
             ),
         ),
@@ -521,7 +520,7 @@ fn logs_with_a_time_per_line_are_read() {
         (
             "[ 12.345678] >> 55\n[ 12.345679] << AA\n",
             "SerialLog 1/1000000 [TX RX] 12345678:0:55 12345679:1:aa end 12345679\n\
-             - RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX",
+             - RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
         ),
         (
             "26.11.2026 12:00:00.123 [TX] - 55 AA\n",
@@ -539,49 +538,45 @@ fn logs_with_a_time_per_line_are_read() {
             "23:59:59.9 55\n00:00:00.1 AA\n",
             &format!(
                 "SerialLog 1/10 [bytes] 0:0:55 2:0:aa end 2\n\
-                      - the clock passes midnight once: the times go on from day to day{}",
+                      - the clock passes midnight once; later times belong to the next day{}",
                 first("23:59:59.9 55")
             ),
         ),
         (
             "0.001: RX 55\n12.5ms TX AA\n",
             "HexBytes 1/10000 [RX TX] 10:0:55 125:1:aa end 125\n\
-             - RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX",
+             - RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
         ),
         // Tables.
         (
             "t_us,dir,data\n0,RX,55 AA\n10,TX,01\n",
             "HexBytes 1/1000000 [RX TX] 0:0:55 0:0:aa 10:1:01 end 10\n\
-             - RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX",
+             - RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
         ),
         ("0,55\n1041,AA\n2083,01\n", "HexBytes [bytes] 0:0:55 1041:0:aa 2083:0:01 end 2083"),
         (
             "> 55 AA\n< 02\n",
-            "HexBytes [] end 0\n! line 1: “> 55 AA” has a direction and no time; give each line a time, or the bytes of one \
-             direction only",
+            "HexBytes [] end 0\n! line 1: “> 55 AA” has a direction but no time; use a time on each line, or bytes of one direction only",
         ),
-        // What is no byte is refused, and so is a fall of the clock.
+        // Words that are not bytes and times that fall are refused.
         (
             "12:00:00.5 55\n12:00:00.6 RX 2 55 AA\n",
             &format!(
-                "SerialLog 1/10 [bytes] 0:0:55 end 1{}\n! line 2: “2” is not a byte; give each as two hexadecimal \
-                      digits, with or without 0x, such as 55 AA 0x01",
+                "SerialLog 1/10 [bytes] 0:0:55 end 1{}\n! line 2: “2” is not a byte; use two hexadecimal digits per byte, such as 55 AA 0x01",
                 first("12:00:00.5 55")
             ),
         ),
         (
             "12:00:00.5 55\n11:00:00.6 55\n",
             &format!(
-                "SerialLog 1/10 [bytes] 0:0:55 end 0{}\n! line 2: the time “11:00:00.6 55” is before the one of the row \
-                      before; times must rise: sort the rows by time",
+                "SerialLog 1/10 [bytes] 0:0:55 end 0{}\n! line 2: the time “11:00:00.6 55” is before the time of the previous row; sort the rows by time",
                 first("12:00:00.5 55")
             ),
         ),
         (
             "05/06/2026 12:00:00 55\n06/06/2026 12:00:00 55\n",
             &format!(
-                "SerialLog 1/1 [bytes] 0:0:55 end 0{}\n! line 2: “06/06/2026 12:00:00 55” is another day, and the dates \
-                      do not say which number is the month; write dates as 2026-11-26",
+                "SerialLog 1/1 [bytes] 0:0:55 end 0{}\n! line 2: “06/06/2026 12:00:00 55” is on another day, and the order of day and month is unclear; use dates such as 2026-11-26",
                 first("05/06/2026 12:00:00 55")
             ),
         ),
@@ -589,7 +584,7 @@ fn logs_with_a_time_per_line_are_read() {
     let unknown = ["0,55\n1041,10\n2083,12\n", "1041,AA\n"];
     for text in unknown {
         let reading = read_bytes(text);
-        assert!(reading.error.is_some() && reading.capture.is_empty(), "{text}: {}", told(&reading));
+        assert!(reading.error.is_some() && reading.capture.is_empty(), "{text}: {}", summary(&reading));
     }
 }
 
@@ -597,7 +592,7 @@ fn logs_with_a_time_per_line_are_read() {
 fn annotations_of_sigrok_are_read() {
     let unnamed = "- no annotation names RX or TX: all bytes are assigned to one line";
     let late = "- bytes without an annotated start bit are timed by their first data bit, one bit late";
-    let both = "- RX and TX are named as in the decoder, and kept apart: RX is taken as the line to the controller; if that is TX, exchange the channels of RX and TX";
+    let both = "- RX and TX are named as in the decoder; RX is read as the line to the controller: exchange RX and TX if it is TX";
     check(&[
         ("uart-1: 55\nuart-1: AA\n", &format!("Annotations [uart-1] 0:0:55 1:0:aa end 1\n{unnamed}")),
         (
@@ -609,7 +604,7 @@ fn annotations_of_sigrok_are_read() {
              2000-2100 uart-1: Start bit\n2100-2900 uart-1: 42\n2900-3000 uart-1: Frame error\n",
             &format!(
                 "Annotations [uart-1] 0:0:4a 2000:0:42! end 2000\n\
-                 - other annotations skipped: Start bit, 1, Stop bit, Start bit, Frame error\n{unnamed}"
+                 - skipped other annotations: Start bit, 1, Stop bit, Start bit, Frame error\n{unnamed}"
             ),
         ),
         (
@@ -624,27 +619,26 @@ fn annotations_of_sigrok_are_read() {
              110-190 UART: RX data: 43\n",
             &format!(
                 "Annotations [RX TX] 0:0:4a 5:1:42! 100:0:43 end 100\n\
-                 - other annotations skipped: Start bit, Start bit, Frame error, Start bit\n{both}"
+                 - skipped other annotations: Start bit, Start bit, Frame error, Start bit\n{both}"
             ),
         ),
         (
             "10-90 UART: RX data: 4A\n5-85 UART: TX data: 42\n2-9 UART: RX data: 43\n",
             &format!(
                 "Annotations [RX TX] 5:1:42 10:0:4a end 10\n{late}\n{both}\n\
-                 ! line 3: sample 2 comes after sample 10 of the same line; sort the lines by sample, and give one recording \
-                 per file"
+                 ! line 3: sample 2 follows sample 10 of the same channel; sort the lines by sample and use one recording per file"
             ),
         ),
         (
             "uart-1: 5A\n9-10 uart-1: AA\n",
             &format!(
                 "Annotations [uart-1] 0:0:5a end 0\n{unnamed}\n\
-             ! line 2: “9-10 uart-1: AA” has samples, and the lines before have none; export all with them, or all without"
+             ! line 2: “9-10 uart-1: AA” has sample numbers, unlike the lines before; export all lines with them, or all without"
             ),
         ),
         (
             "uart-1: U\n",
-            "Annotations [] end 0\n- other annotations skipped: U\n! line 1: the annotations have no bytes in hexadecimal; \
+            "Annotations [] end 0\n- skipped other annotations: U\n! line 1: the annotations have no bytes in hexadecimal; \
              print rx-data or tx-data with format=hex (sigrok-cli -A uart=rx-data)",
         ),
     ]);
@@ -652,8 +646,7 @@ fn annotations_of_sigrok_are_read() {
 
 #[test]
 fn step_commands_of_klipper_become_the_steps_of_each_stepper() {
-    let made = "- the commands have no pulse widths and no DIR set-up times: pulses of at most 32 ticks are made, so \
-        timing checks do not apply";
+    let made = "- the commands have no pulse widths and no DIR set-up times: pulses are at most 32 ticks wide, so timing checks do not apply";
     let one = format!("- steppers: oid=3 is STEP0 and DIR0\n{made}");
     let no_reset = "- no reset_step_clock: each stepper begins at time 0, so times of different steppers cannot be compared";
     check(&[
@@ -689,26 +682,25 @@ fn step_commands_of_klipper_become_the_steps_of_each_stepper() {
             "reset_step_clock oid=3 clock=0\nqueue_step oid=3 interval=9 count=5 add=-2\n",
             &format!(
                 "Klipper [STEP0 DIR0] end 0\n{one}\n! line 2: “queue_step oid=3 interval=9 count=5 add=…”: interval=9 \
-                      count=5 add=-2 has an interval of 1 ticks; steps are at least 2 ticks apart"
+                      count=5 add=-2 has a step interval of 1 ticks, below the minimum of 2; record the log again"
             ),
         ),
         (
             "reset_step_clock oid=3 clock=0\nqueue_step oid=3 interval=9 count=70000 add=0\n",
             &format!(
                 "Klipper [STEP0 DIR0] end 0\n{one}\n! line 2: “queue_step oid=3 interval=9 count=70000 …”: interval=9 \
-                      count=70000 add=0 does not fit: an interval has 32 bits, a count is 0 to 65535, add has 16 bits and a sign"
+                      count=70000 add=0 is out of range; use an interval of 32 bits, a count of 16 bits and an add of 16 bits with sign"
             ),
         ),
         (
             "queue_step oid=3 interval=9 add=0\n",
-            "Klipper [] end 0\n! line 1: “queue_step oid=3 interval=9 add=0”: queue_step has no \
-             whole number count=",
+            "Klipper [] end 0\n! line 1: “queue_step oid=3 interval=9 add=0”: queue_step has no number count; use queue_step with count= and a whole number",
         ),
     ]);
 }
 
 #[test]
-fn step_commands_that_stand_for_too_many_steps_are_refused_with_numbers() {
+fn step_commands_with_too_many_steps_are_refused() {
     let log = format!(
         "reset_step_clock oid=0 clock=0\n{}",
         "queue_step oid=0 interval=100 count=65535 add=0\n".repeat(1000)
@@ -717,9 +709,7 @@ fn step_commands_that_stand_for_too_many_steps_are_refused_with_numbers() {
     let error = reading.error.expect("it is refused");
     assert_eq!(error.line, 9);
     assert!(
-        error.what.ends_with(
-            "more than 500 000 steps, which are 1 000 000 changes; give a shorter part of the log"
-        ),
+        error.message.ends_with("more than 500 000 steps (1 000 000 changes); use a shorter part of the log"),
         "{error}"
     );
     assert!(reading.capture.len() > 900_000);
@@ -739,7 +729,7 @@ fn tables_of_positions_are_read() {
         ("cycle,position\n0,0\n1600,1\n", "PositionsCsv [] 0@0 1600@1 end 1600"),
         (
             "t_us,speed,pos\n0,1.5,0\n10,1.5,2\n",
-            "PositionsCsv 1/1000000 [] 0@0 10@2 end 10\n- columns besides time and position: speed",
+            "PositionsCsv 1/1000000 [] 0@0 10@2 end 10\n- skipped columns: speed",
         ),
         ("t,steps\n0,0\n1,5\n", "PositionsCsv [] 0@0 1@5 end 1"),
         ("t,Encoder A,Encoder B\n0,0,1\n1,1,1\n", "LevelsCsv [Encoder A Encoder B] 0:2 1:3 end 1"),
@@ -747,75 +737,65 @@ fn tables_of_positions_are_read() {
         ("0,100\n1,250\n", "PositionsCsv [] 0@100 1@250 end 1"),
         (
             "t,pos\n0,0\n1,5.5\n",
-            "PositionsCsv [] 0@0 end 0\n! line 3: the position “5.5” is not a whole number of steps; multiply it by the steps of a unit (of a mm, of a turn) and round it",
+            "PositionsCsv [] 0@0 end 0\n! line 3: the position “5.5” is not a whole number of steps; multiply it by the steps per unit (mm, turn) and round it",
         ),
         (
             "t,pos\n0,0\n1,\n",
-            "PositionsCsv [] 0@0 end 0\n! line 3: “” is not a position; give a whole number of steps",
+            "PositionsCsv [] 0@0 end 0\n! line 3: “” is not a position; use a whole number of steps",
         ),
         (
             "cycle,position\n0,0\n1.5,1\n",
-            "PositionsCsv [] 0@0 end 0\n! line 3: “1.5” is not a cycle; give a whole number from 0",
+            "PositionsCsv [] 0@0 end 0\n! line 3: “1.5” is not a cycle number; use a whole number from 0",
         ),
     ]);
 }
 
 #[test]
-fn an_unknown_file_gets_the_list_of_kinds() {
-    let unknown = "no kind of file that can be read here; give a value change dump (.vcd), ";
+fn an_unknown_file_is_refused_with_a_fix() {
+    let unknown = "unknown format; use a value change dump (.vcd), ";
     for (bytes, expected) in [
         (&b""[..], "the file is empty; record or export again"),
         (b" \r\n\n", "the file is empty; record or export again"),
         (b"\xef\xbb\xbf\n", "the file is empty; record or export again"),
-        (
-            b"Dear all,\nhere are the numbers",
-            "“Dear all,”: no kind of file that can be read here; it may be ",
-        ),
+        (b"Dear all,\nhere are the numbers", "unknown format, beginning with “Dear all,”; the nearest are "),
         (b"\x7fELF\x02\x01\0\0", unknown),
         (b"\xff\xfet\0i\0m\0e\0", "the text is UTF-16; save it as UTF-8"),
-        (b"\x1f\x8b\x08\0", "the file is compressed (gzip); uncompress it: gunzip"),
-        (
-            b"\0\0\0\0\0\0\0\x01\x49\0\0",
-            "a waveform of GTKWave (FST); make a value change dump of it: fst2vcd ",
-        ),
+        (b"\x1f\x8b\x08\0", "the file is compressed (gzip); use gunzip"),
+        (b"\0\0\0\0\0\0\0\x01\x49\0\0", "waveforms of GTKWave (FST) cannot be read; convert with fst2vcd "),
         (
             b"X,CH1,Start,Increment\nSequence,Volt,0.0,1e-6\n0,3.28\n",
-            "a table of an oscilloscope's voltages; ",
+            "voltages of an oscilloscope cannot be read; ",
         ),
-        (b"Second,Volt\n-0.001,3.3\n", "a table of an oscilloscope's voltages; "),
-        (b"<SALEAE>\0\0\0\0", "a binary export of Saleae Logic; export as CSV"),
+        (b"Second,Volt\n-0.001,3.3\n", "voltages of an oscilloscope cannot be read; "),
+        (b"<SALEAE>\0\0\0\0", "binary exports of Saleae Logic cannot be read; export as CSV"),
         (b"PK\x03\x04 and nothing else", "the zip's directory cannot be read"),
     ] {
         let reading = read_bytes(bytes);
         let error = reading.error.expect("it is refused");
-        assert!(error.line == 0 && error.what.starts_with(expected), "{bytes:?}: {error}");
+        assert!(error.line == 0 && error.message.starts_with(expected), "{bytes:?}: {error}");
         assert!(reading.capture.is_empty());
     }
 }
 
 #[test]
-fn a_file_of_no_kind_names_the_three_nearest_and_what_they_need() {
+fn an_unknown_format_names_the_three_nearest_ones_and_their_needs() {
     for (text, expected) in [
         (
             "STEP,DIR,speed\n0,1,5\n1,1,5\n",
-            "“STEP,DIR,speed”: no kind of file that can be read here; it may be a table of levels, if a column is named as its \
-             time: time_s, time_us, sample; or a table of times and positions, if its columns are named, such as \
-             time_us,position; or ",
+            "unknown format, beginning with “STEP,DIR,speed”; the nearest are a table of levels (needs a time column, such as time_us or sample); a table of positions (needs column names such as time_us,position); ",
         ),
         (
             "0,55\n1041,10\n2083,12\n",
-            "“0,55”: no kind of file that can be read here; it may be a table of times and positions, if its columns are named, \
-             such as time_us,position; or times and bytes, if the columns are named, such as t_us,bytes; or ",
+            "unknown format, beginning with “0,55”; the nearest are a table of positions (needs column names such as time_us,position); a table of bytes (needs column names such as t_us,bytes); ",
         ),
         (
             "55 AA hello\n55 AA\n",
-            "“55 AA hello”: no kind of file that can be read here; it may be bytes in hexadecimal, if each has two digits: \
-             “hello” is not a byte; or ",
+            "unknown format, beginning with “55 AA hello”; the nearest are bytes in hexadecimal (“hello” is not a byte); ",
         ),
     ] {
-        let error = read_bytes(text).error.expect("it is refused").what;
+        let error = read_bytes(text).error.expect("it is refused").message;
         assert!(error.starts_with(expected), "{error}");
-        assert_eq!(error.matches("; or ").count(), 2, "{error}");
+        assert_eq!(error.matches("; ").count(), 3, "{error}");
     }
 }
 
@@ -840,27 +820,27 @@ fn too_many_rows_end_the_reading() {
 }
 
 #[test]
-fn pulses_within_one_time_of_the_file_are_counted() {
+fn pulses_that_start_and_end_at_the_same_time_are_counted() {
     let lost = |text: &str| read_bytes(text).capture.notes;
     let table = "millis,STEP,DIR\n0,0,1\n1,1,1\n1,0,1\n2,1,1\n2,0,1\n3,1,0\n4,1,1\n4,1,0\n5,0,0\n";
     assert_eq!(
         lost(table),
-        ["2 pulses start and end at one time of the file, lost (STEP); record times more finely"]
+        ["2 pulses start and end at the same time and are lost (STEP); record with a finer unit of time"]
     );
     // The first levels of a file change nothing.
     assert_eq!(lost("millis,STEP,DIR\n0,1,1\n0,0,1\n1,0,0\n"), [""; 0]);
     let dump = "$var wire 1 s STEP $end $var wire 1 g glitch $end $enddefinitions $end #0 1s 0s 0g #5 1s 0s 1g 0g #6 1s #7 0s";
     assert_eq!(
         lost(dump),
-        ["1 pulse starts and ends at one time of the file, lost (STEP); record times more finely"]
+        ["1 pulse starts and ends at the same time and is lost (STEP); record with a finer unit of time"]
     );
     // A map names other channels.
     for (wanted, channel) in [("glitch", "glitch"), ("#1", "glitch"), ("step", "STEP")] {
-        let wanted = Wanted { channels: vec![wanted.to_owned()], ..Wanted::default() };
+        let wanted = ReadOptions { channels: vec![wanted.to_owned()], ..ReadOptions::default() };
         let input = std::io::Cursor::new(dump);
-        let capture = read_wanted(input, &Limits::default(), &wanted, &mut |_| true).capture;
+        let capture = read_with_options(input, &Limits::default(), &wanted, &mut |_| true).capture;
         let expected = format!(
-            "1 pulse starts and ends at one time of the file, lost ({channel}); record times more finely"
+            "1 pulse starts and ends at the same time and is lost ({channel}); record with a finer unit of time"
         );
         assert_eq!(capture.notes, [expected], "{channel}");
     }
@@ -871,17 +851,18 @@ fn a_count_next_to_step_and_dir_is_not_a_position() {
     let levels = |column: &str, values: [&str; 3]| {
         let [first, second, third] = values;
         let text = format!("time_us,{column},STEP,DIR\n0,{first},0,1\n10,{second},1,1\n15,{third},0,1\n");
-        told(&read_bytes(text))
+        summary(&read_bytes(text))
     };
     for column in ["count", "counter", "pos", "steps", "n", "mode"] {
         let expected = format!(
-            "LevelsCsv 1/1000000 [STEP DIR] 0:2 10:3 15:2 end 15\n- columns that are no levels: {column}"
+            "LevelsCsv 1/1000000 [STEP DIR] 0:2 10:3 15:2 end 15\n- skipped columns without levels: {column}"
         );
         assert_eq!(levels(column, ["0", "1", "2"]), expected);
     }
-    let expected = "LevelsCsv 1/1000000 [STEP DIR] 0:2 10:3 15:2 end 15\n- columns that are no levels: pos";
+    let expected =
+        "LevelsCsv 1/1000000 [STEP DIR] 0:2 10:3 15:2 end 15\n- skipped columns without levels: pos";
     assert_eq!(levels("pos", ["0", "1", "1"]), expected);
-    assert!(told(&read_bytes("time_us,pos,DIR\n0,0,1\n10,1,1\n")).starts_with("PositionsCsv"));
+    assert!(summary(&read_bytes("time_us,pos,DIR\n0,0,1\n10,1,1\n")).starts_with("PositionsCsv"));
 }
 
 #[test]
@@ -898,8 +879,7 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     assert_eq!(
         reading.capture.notes,
         [
-            "100 006 of 100 070 channels left out (W4, W5, W6, W7, W8, W9 and 100 000 more): 64 are read, first those \
-             that the channel map names, then those with a recognized name"
+            "100 006 of 100 070 channels left out (W4, W5, W6, W7, W8, W9 and 100 000 more): at most 64 are read, first those in the channel map, then those with a recognized name"
         ]
     );
     let table = format!("Time [s]{}\n0{}\n", ",A".repeat(70), ",1".repeat(70));
@@ -908,12 +888,13 @@ fn channels_beyond_the_first_64_are_named_and_counted() {
     assert_eq!(reading.capture.changes.first().expect("a row").levels, u64::MAX);
     assert_eq!(reading.capture.notes.len(), 1);
     assert!(
-        reading.capture.notes[0].starts_with("6 of 70 channels left out (A, A, A, A, A, A): 64 are read")
+        reading.capture.notes[0]
+            .starts_with("6 of 70 channels left out (A, A, A, A, A, A): at most 64 are read")
     );
 }
 
 #[test]
-fn wanted_and_recognized_channels_come_first() {
+fn requested_and_recognized_channels_come_first() {
     let names = |reading: &Reading| -> Vec<String> {
         reading.capture.channels.iter().map(|channel| channel.name.clone()).collect()
     };
@@ -931,8 +912,8 @@ fn wanted_and_recognized_channels_come_first() {
     );
     let wanted =
         ["tb.instr[39]", "LAST", "tb.wide[3999999999]", "wide[4000000000]", "#3", ""].map(String::from);
-    let wanted = Wanted { channels: wanted.to_vec(), ..Wanted::default() };
-    let reading = read_wanted(std::io::Cursor::new(dump), &Limits::default(), &wanted, &mut |_| true);
+    let wanted = ReadOptions { channels: wanted.to_vec(), ..ReadOptions::default() };
+    let reading = read_with_options(std::io::Cursor::new(dump), &Limits::default(), &wanted, &mut |_| true);
     let found = names(&reading);
     assert_eq!(found[59..], ["tb.instr[39]", "tb.STEP", "tb.DIR", "tb.last", "tb.wide[3999999999]"]);
     assert_eq!(reading.capture.changes.last().expect("a row").levels, 0b1011 << 59);
@@ -952,16 +933,16 @@ fn wanted_and_recognized_channels_come_first() {
 fn watch_gets_progress_and_can_cancel() {
     let rows: String = (0..100_000).map(|at| format!("{at},{}\n", at % 2)).collect();
     let table = format!("Time [s],A\n{rows}");
-    let mut heard = Vec::new();
+    let mut calls = Vec::new();
     let reading = read(std::io::Cursor::new(&table), &Limits::default(), &mut |bytes| {
-        heard.push(bytes);
+        calls.push(bytes);
         true
     });
     assert_eq!((reading.capture.changes.len(), reading.error), (100_000, None));
-    assert_eq!(heard, [1 << 18, 2 << 18, 3 << 18, table.len() as u64]);
+    assert_eq!(calls, [1 << 18, 2 << 18, 3 << 18, table.len() as u64]);
     let reading = read(std::io::Cursor::new(&table), &Limits::default(), &mut |bytes| bytes < 1 << 19);
     let error = reading.error.expect("it was cancelled");
-    assert_eq!((error.line, error.what.as_str()), (0, "cancelled"));
+    assert_eq!((error.line, error.message.as_str()), (0, "cancelled"));
     assert!((40_000..70_000).contains(&reading.capture.changes.len()));
     assert_eq!(reading.capture.end, reading.capture.changes.last().expect("a row").tick);
 }
@@ -971,7 +952,7 @@ fn a_line_without_end_is_refused() {
     for text in ["Time [s],A\n0,".to_string(), "$var wire 1 a A $end $enddefinitions $end #0 1a b".into()] {
         let reading = read_bytes(text + &"1".repeat(1_200_000));
         let error = reading.error.expect("it is refused");
-        assert!(error.what.starts_with("longer than 1048576 bytes; "), "{error}");
+        assert!(error.message.starts_with("the line is longer than 1048576 bytes; "), "{error}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! Files that are cut off, changed or made up: an error at most, and what was read is in order.
+//! Truncated, changed and random files cause an error at most, and the capture is always valid.
 
 use crate::common::read_bytes;
 use crate::writers::{self, Levels};
@@ -12,7 +12,7 @@ use stepscope_capture::{
 /// The metadata of a session with one channel.
 const METADATA: &[u8] = b"[device 1]\ncapturefile=logic-1\nsamplerate=1 MHz\nprobe1=A\nunitsize=1\n";
 
-/// A small file of each kind.
+/// A small file of each format.
 fn files() -> Vec<Vec<u8>> {
     let changes = (0..30).map(|at| Change { tick: at * 3, levels: at % 8 });
     let recording = Levels {
@@ -55,8 +55,8 @@ fn files() -> Vec<Vec<u8>> {
     files
 }
 
-/// What a [`Capture`] promises.
-fn in_order(capture: &Capture) {
+/// Checks the invariants of a [`Capture`].
+fn check_invariants(capture: &Capture) {
     assert!(capture.channels.len() <= MAX_CHANNELS);
     assert!(
         capture
@@ -78,11 +78,11 @@ fn in_order(capture: &Capture) {
     assert!(capture.notes.len() <= 20);
 }
 
-fn survives(bytes: &[u8]) {
+fn check_reading(bytes: &[u8]) {
     let reading = read_bytes(bytes);
-    in_order(&reading.capture);
+    check_invariants(&reading.capture);
     let few = read(BufReader::with_capacity(3, Cursor::new(bytes)), &Limits { max_rows: 5 }, &mut |_| true);
-    in_order(&few.capture);
+    check_invariants(&few.capture);
     assert!(few.capture.len() <= 5);
 }
 
@@ -97,11 +97,11 @@ fn every_file_is_read() {
 }
 
 #[test]
-fn every_beginning_of_a_file_is_read_up_to_its_end() {
+fn truncated_files_are_read_up_to_their_end() {
     for file in files() {
         let whole = read_bytes(&file).capture;
         for length in 0..file.len() {
-            survives(&file[..length]);
+            check_reading(&file[..length]);
             let part = read_bytes(&file[..length]).capture;
             // All but the last row, in which a number may be cut off.
             if part.format == whole.format && part.timebase == whole.timebase {
@@ -113,34 +113,35 @@ fn every_beginning_of_a_file_is_read_up_to_its_end() {
 }
 
 #[test]
-fn a_session_that_unpacks_to_more_than_it_should_is_ended() {
+fn a_session_that_unpacks_to_too_many_samples_is_refused() {
     let zeros = vec![0; 3_000_000];
     let metadata = b"[device 1]\ncapturefile=logic-1\nsamplerate=1 MHz\nprobe1=A\nunitsize=1\n".to_vec();
     let files = [("metadata".to_string(), metadata), ("logic-1-1".into(), zeros)];
     let session = writers::zip(&files, true);
     assert!(session.len() < 20_000);
-    let mut heard = 0;
+    let mut calls = 0;
     let reading = read(Cursor::new(&session), &Limits { max_rows: 100 }, &mut |_| {
-        heard += 1;
+        calls += 1;
         true
     });
-    let error = reading.error.expect("it is ended");
-    assert_eq!(error.what, "more than 1 000 000 samples; record a shorter time");
-    assert!(heard >= 3);
+    let error = reading.error.expect("it is refused");
+    assert_eq!(error.message, "more than 1 000 000 samples; record a shorter time");
+    assert!(calls >= 3);
     assert_eq!(read(Cursor::new(&session), &Limits { max_rows: 1000 }, &mut |_| true).error, None);
 }
 
-/// Overlapping files, files that unpack to more than they say, and files of one name are refused before anything is unpacked.
+/// Overlapping files, files with a false size, and two files with one name are refused.
 #[test]
-fn a_session_whose_zip_lies_is_refused() {
+fn a_zip_with_overlapping_files_or_false_sizes_is_refused() {
     let metadata = METADATA.to_vec();
     let files = |samples: &[(&str, Vec<u8>)]| {
         let mut all = vec![("metadata".to_string(), metadata.clone())];
         all.extend(samples.iter().map(|(name, held)| ((*name).to_string(), held.clone())));
         writers::zip(&all, true)
     };
-    let refused =
-        |zip: &[u8]| read(Cursor::new(zip), &Limits::default(), &mut |_| true).error.map(|error| error.what);
+    let refused = |zip: &[u8]| {
+        read(Cursor::new(zip), &Limits::default(), &mut |_| true).error.map(|error| error.message)
+    };
     let good = files(&[("logic-1-1", vec![0, 1, 0]), ("logic-1-2", vec![0, 1, 0])]);
     assert_eq!(refused(&good), None);
     // The directory's entry of the second piece leads to the first.
@@ -151,14 +152,14 @@ fn a_session_whose_zip_lies_is_refused() {
     overlapping[entries[2] + 16..entries[2] + 28].copy_from_slice(&first);
     let first: Vec<u8> = good[entries[1] + 42..entries[1] + 46].to_vec();
     overlapping[entries[2] + 42..entries[2] + 46].copy_from_slice(&first);
-    assert!(refused(&overlapping).is_some_and(|what| what.starts_with("files of the zip overlap")));
-    // It says less, and more, than there is.
+    assert!(refused(&overlapping).is_some_and(|message| message.starts_with("files of the zip overlap")));
+    // The declared size is too small, or too large.
     let mut less = good.clone();
     less[entries[1] + 24] = 2;
-    assert!(refused(&less).is_some_and(|what| what.starts_with("“logic-1-1” cannot be unpacked: ")));
+    assert!(refused(&less).is_some_and(|message| message.starts_with("“logic-1-1” cannot be unpacked: ")));
     let mut more = good;
     more[entries[1] + 24..entries[1] + 28].copy_from_slice(&[0xfe; 4]);
-    assert!(refused(&more).is_some_and(|what| what.starts_with("“logic-1-1” cannot be unpacked: ")));
+    assert!(refused(&more).is_some_and(|message| message.starts_with("“logic-1-1” cannot be unpacked: ")));
     // Two descriptions; one in a folder.
     let two = files(&[("metadata", metadata.clone()), ("logic-1-1", vec![0, 1])]);
     assert_eq!(
@@ -171,17 +172,17 @@ fn a_session_whose_zip_lies_is_refused() {
     );
     assert!(
         refused(&nested)
-            .is_some_and(|what| what.starts_with("“metadata” is in the folder “own/” of the zip; "))
+            .is_some_and(|message| message.starts_with("“metadata” is in the folder “own/” of the zip; "))
     );
 }
 
-/// Readers differ in which of two values they take.
+/// Programs differ in which of two values they use.
 #[test]
-fn a_session_that_gives_a_value_twice_is_refused() {
+fn a_session_with_a_repeated_value_is_refused() {
     let refused = |files: &[(&str, &[u8])]| {
         let all: Vec<_> = files.iter().map(|(name, held)| ((*name).to_string(), held.to_vec())).collect();
         let reading = read(Cursor::new(writers::zip(&all, true)), &Limits::default(), &mut |_| true);
-        reading.error.map(|error| error.what)
+        reading.error.map(|error| error.message)
     };
     let samples: (&str, &[u8]) = ("logic-1-1", &[0, 1, 0]);
     assert_eq!(refused(&[("version", b"2"), ("metadata", METADATA), samples]), None);
@@ -200,7 +201,7 @@ fn a_session_that_gives_a_value_twice_is_refused() {
         let metadata = [METADATA, line.as_bytes()].concat();
         assert_eq!(
             refused(&[("metadata", &metadata), samples]),
-            Some(format!("“metadata” gives {key} twice; save the session again")),
+            Some(format!("“metadata” contains {key} twice; save the session again")),
             "{line}"
         );
     }
@@ -221,9 +222,8 @@ fn a_session_of_terabytes_is_refused() {
     }
     let error = read(Cursor::new(zip), &Limits::default(), &mut |_| true).error.expect("it is refused");
     assert_eq!(
-        error.what,
-        "the samples unpack to 300 647 710 580 bytes; at most 274 877 906 944 are read: record a shorter time, or at a \
-         lower rate"
+        error.message,
+        "the samples unpack to 300 647 710 580 bytes, more than the maximum of 274 877 906 944; record a shorter time or at a lower rate"
     );
 }
 
@@ -235,7 +235,7 @@ fn a_session_of_too_many_files_is_refused() {
         read(Cursor::new(writers::zip(all, false)), &Limits::default(), &mut |_| true).error
     };
     let error = read(&all).expect("it is refused");
-    assert_eq!(error.what, "more than 65536 files in the zip; record a shorter time");
+    assert_eq!(error.message, "more than 65536 files in the zip; record a shorter time");
     all.pop();
     assert_eq!(read(&all), None);
 }
@@ -284,28 +284,28 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn bytes_by_chance_never_end_the_program(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
-        survives(&bytes);
+    fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        check_reading(&bytes);
     }
 
     #[test]
-    fn letters_by_chance_never_end_the_program(text in "[ -~\n\t]{0,300}") {
-        survives(text.as_bytes());
+    fn random_letters_never_panic(text in "[ -~\n\t]{0,300}") {
+        check_reading(text.as_bytes());
     }
 
     #[test]
-    fn words_of_dumps_in_any_order_never_end_the_program(
+    fn words_of_dumps_in_any_order_never_panic(
         words in prop::collection::vec(prop::sample::select(vec![
             "$var", "wire", "1", "64", "real", "!", "a", "$end", "$scope", "module", "m", "$upscope", "$enddefinitions",
             "#0", "#5", "#9", "1!", "x!", "b10", "b", "r1", "s", "[3:0]", "[0:3]", "$dumpoff", "$dumpvars", "$timescale",
             "1us", "$comment", "bzx", "-", "#18446744073709551615", "[9223372036854775807:-9223372036854775808]",
         ]), 0..80),
     ) {
-        survives(format!("$var wire 4 a n $end {}", words.join(" ")).as_bytes());
+        check_reading(format!("$var wire 4 a n $end {}", words.join(" ")).as_bytes());
     }
 
     #[test]
-    fn changed_files_never_end_the_program(
+    fn changed_files_never_panic(
         at in any::<prop::sample::Index>(),
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 1..8),
     ) {
@@ -323,6 +323,6 @@ proptest! {
                 }
             }
         }
-        survives(&file);
+        check_reading(&file);
     }
 }

@@ -1,4 +1,4 @@
-//! Random recordings, written as each kind of file and read back equal.
+//! Random recordings are equal after they are written and read in each format.
 
 use crate::common::read_bytes;
 use crate::writers::{self, Levels};
@@ -8,7 +8,7 @@ use stepscope_capture::{
     timebase::Timebase,
 };
 
-/// Rows that rise in time and of which each differs from the one before, the first at tick 0.
+/// Changes in order of time, the first at tick 0, each with other levels than the previous one.
 fn changes(channels: usize, most: u64) -> impl Strategy<Value = Vec<Change>> {
     let mask = u64::MAX >> (64 - channels);
     let rows = prop::collection::vec((1..most, any::<u64>()), 1..40);

@@ -1,7 +1,7 @@
 //! Values that have several meanings: numbers of any base, lengths, directions and times of logs, units of positions.
 
-use crate::common::{check, read_bytes, told};
-use stepscope_capture::read::{Base, Limits, Wanted, read_wanted};
+use crate::common::{check, read_bytes, summary};
+use stepscope_capture::read::{Base, Limits, ReadOptions, read_with_options};
 
 #[test]
 fn annotations_of_any_base_are_read_and_unclear_ones_are_not_guessed() {
@@ -13,7 +13,7 @@ fn annotations_of_any_base_are_read_and_unclear_ones_are_not_guessed() {
             .collect()
     };
     let late = "- bytes without an annotated start bit are timed by their first data bit, one bit late";
-    let unclear = "- the bytes may be hexadecimal or decimal: they are read as hexadecimal; if they are decimal, print them \
+    let unclear = "- the bytes may be hexadecimal or decimal and are read as hexadecimal; if they are decimal, print them \
                    with format=hex";
     let text = "the annotations have no bytes in hexadecimal; print rx-data or tx-data with format=hex (sigrok-cli -A \
                 uart=rx-data)";
@@ -36,31 +36,34 @@ fn annotations_of_any_base_are_read_and_unclear_ones_are_not_guessed() {
         (
             "4C 7 65",
             format!(
-                "0:0:4c end 0\n{late}\n! line 3: byte 1, from 0, is not hexadecimal; print all of them with format=hex"
+                "0:0:4c end 0\n{late}\n! line 3: byte 1, from 0, is not hexadecimal; print all bytes with format=hex"
             ),
         ),
         // sigrok's format=ascii prints control characters so.
-        ("1 2 [0D]", format!("end 10\n- other annotations skipped: [0D]\n{late}\n! line 3: {text}")),
-        ("H 1 2", format!("end 20\n- other annotations skipped: H\n{late}\n! line 3: {text}")),
+        ("1 2 [0D]", format!("end 10\n- skipped other annotations: [0D]\n{late}\n! line 3: {text}")),
+        ("H 1 2", format!("end 20\n- skipped other annotations: H\n{late}\n! line 3: {text}")),
     ] {
-        assert_eq!(told(&read_bytes(timed(texts))), format!("Annotations [RX] {expected}"), "{texts}");
+        assert_eq!(summary(&read_bytes(timed(texts))), format!("Annotations [RX] {expected}"), "{texts}");
     }
     // Whoever reads may say it.
-    let wanted = Wanted { base: Some(Base::Decimal), ..Wanted::default() };
+    let wanted = ReadOptions { base: Some(Base::Decimal), ..ReadOptions::default() };
     let read = |text: &str| {
-        read_wanted(std::io::Cursor::new(text.to_owned()), &Limits::default(), &wanted, &mut |_| true)
+        read_with_options(std::io::Cursor::new(text.to_owned()), &Limits::default(), &wanted, &mut |_| true)
     };
-    assert_eq!(told(&read(&timed("72 65"))), format!("Annotations [RX] 0:0:48 10:0:41 end 10\n{late}"));
-    assert_eq!(told(&read("t_us,value\n0,65\n10,173\n")), "HexBytes 1/1000000 [bytes] 0:0:41 10:0:ad end 10");
+    assert_eq!(summary(&read(&timed("72 65"))), format!("Annotations [RX] 0:0:48 10:0:41 end 10\n{late}"));
+    assert_eq!(
+        summary(&read("t_us,value\n0,65\n10,173\n")),
+        "HexBytes 1/1000000 [bytes] 0:0:41 10:0:ad end 10"
+    );
 }
 
 #[test]
-fn lengths_arrows_and_minutes_of_logs_are_no_bytes() {
+fn byte_counts_arrows_and_minutes_of_logs_are_not_bytes() {
     let first = |time: &str| {
-        format!("\n- the first time is “{time}”: it is taken as 0, and all others count from it")
+        format!("\n- the first time is “{time}” and is read as 0; all other times are relative to it")
     };
-    let both = "- RX and TX are named as in the log: in one of the host, TX is what the controller receives; for such a log, exchange the channels of RX and TX";
-    let minutes = "- times have no seconds: all bytes of a minute have one time";
+    let both = "- RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log";
+    let minutes = "- times have no seconds, so all bytes of a minute have the same time";
     check(&[
         // A direction at the end.
         (
@@ -75,15 +78,14 @@ fn lengths_arrows_and_minutes_of_logs_are_no_bytes() {
             "t_us,data,dir\n0,55 AA,->\n10,01,<-\n",
             &format!("HexBytes 1/1000000 [TX RX] 0:0:55 0:0:aa 10:1:01 end 10\n{both}"),
         ),
-        // The text of bytes is none.
+        // Text after bytes is skipped.
         (
             "[12:00:00.1] 2d 3e  ->\n",
             &format!("SerialLog 1/10 [bytes] 0:0:2d 0:0:3e end 0{}", first("[12:00:00.1] 2d 3e  ->")),
         ),
         (
             "55 AA ->\n",
-            "HexBytes [] end 0\n! line 1: “55 AA ->” has a direction and no time; give each line a time, or the bytes of one \
-             direction only",
+            "HexBytes [] end 0\n! line 1: “55 AA ->” has a direction but no time; use a time on each line, or bytes of one direction only",
         ),
         // Numbers of bytes.
         (
@@ -98,16 +100,14 @@ fn lengths_arrows_and_minutes_of_logs_are_no_bytes() {
         (
             "12:00:00.5 RX: (04) 41 42\n",
             &format!(
-                "SerialLog 1/10 [RX] 0:0:41 0:0:42 end 0{}\n- 1 of the numbers in brackets before the bytes of a line differ \
-                 from their number; they are left out",
+                "SerialLog 1/10 [RX] 0:0:41 0:0:42 end 0{}\n- 1 numbers in brackets differ from the number of bytes in their lines and are skipped",
                 first("12:00:00.5 RX: (04) 41 42")
             ),
         ),
         (
             "12:00:00.5 RX 04: 41 42\n",
             &format!(
-                "SerialLog 1/10 [] end 0{}\n! line 1: “04:” before “41 42” may be a byte or a number of bytes; remove it, or \
-                 write all bytes in one way",
+                "SerialLog 1/10 [] end 0{}\n! line 1: “04:” before “41 42” may be a byte or a byte count; remove it, or write all bytes in one form",
                 first("12:00:00.5 RX 04: 41 42")
             ),
         ),
@@ -137,7 +137,10 @@ fn lengths_arrows_and_minutes_of_logs_are_no_bytes() {
         ),
         (
             "01:02:03\n",
-            &format!("SerialLog 1/1 [] end 0{}\n! line 1: the file has no bytes", first("01:02:03")),
+            &format!(
+                "SerialLog 1/1 [] end 0{}\n! line 1: the file has no bytes; record again",
+                first("01:02:03")
+            ),
         ),
         ("12:00\n", "HexBytes [bytes] 0:0:12 1:0:00 end 1"),
         ("12:00 41:42\n", "HexBytes [bytes] 0:0:12 1:0:00 2:0:41 3:0:42 end 3"),
@@ -149,8 +152,7 @@ fn lengths_arrows_and_minutes_of_logs_are_no_bytes() {
         (
             "1700000000.5 RX 41\n1700000001 RX 42\n",
             &format!(
-                "HexBytes 1/10 [RX] 0:0:41 end 0{}\n! line 2: “1700000001” is not a byte; give each as two hexadecimal digits, \
-                 with or without 0x, such as 55 AA 0x01",
+                "HexBytes 1/10 [RX] 0:0:41 end 0{}\n! line 2: “1700000001” is not a byte; use two hexadecimal digits per byte, such as 55 AA 0x01",
                 first("1700000000.5 RX 41")
             ),
         ),
@@ -158,9 +160,8 @@ fn lengths_arrows_and_minutes_of_logs_are_no_bytes() {
 }
 
 #[test]
-fn numbers_next_to_times_are_never_silently_hexadecimal() {
-    let unclear = "- the bytes may be hexadecimal or decimal: they are read as hexadecimal; if they are decimal, name their \
-                   column dec (t_us,dec)";
+fn numbers_next_to_times_are_hexadecimal_only_if_unambiguous() {
+    let unclear = "- the bytes may be hexadecimal or decimal and are read as hexadecimal; if they are decimal, name the column dec (t_us,dec)";
     check(&[
         ("t_us,value\n0,65\n10,173\n20,7\n", "HexBytes 1/1000000 [bytes] 0:0:41 10:0:ad 20:0:07 end 20"),
         ("t_us,value\n0,65\n10,AD\n", "HexBytes 1/1000000 [bytes] 0:0:65 10:0:ad end 10"),
@@ -171,7 +172,7 @@ fn numbers_next_to_times_are_never_silently_hexadecimal() {
         ("time_s,NN\n0.5,4A\n1.0,42\n", "HexBytes 1/10 [bytes] 5:0:4a 10:0:42 end 10"),
         (
             "t_us,dec\n0,65\n10,256\n",
-            "HexBytes 1/1000000 [bytes] 0:0:41 end 10\n! line 3: “256” is not a decimal byte; give 0 to 255",
+            "HexBytes 1/1000000 [bytes] 0:0:41 end 10\n! line 3: “256” is not a decimal byte; use 0 to 255",
         ),
         ("10,4A\n20,42\n", "HexBytes [bytes] 10:0:4a 20:0:42 end 20"),
         ("10 41\n20 42\n", "HexBytes [bytes] 0:0:10 1:0:41 2:0:20 3:0:42 end 3"),
@@ -184,7 +185,7 @@ fn numbers_next_to_times_are_never_silently_hexadecimal() {
         "time,NN\n10,41\n20,42\n",
     ] {
         let reading = read_bytes(text);
-        assert!(reading.error.is_some() && reading.capture.is_empty(), "{text}: {}", told(&reading));
+        assert!(reading.error.is_some() && reading.capture.is_empty(), "{text}: {}", summary(&reading));
     }
 }
 
@@ -193,7 +194,7 @@ fn hexadecimal_counts_and_bytes_with_colons_are_distinguished() {
     let log = "12:00:00.5 RX [0A] 00 01 02 03 04 05 06 07 08 09\n";
     let bytes = |text: &str| {
         let reading = read_bytes(text);
-        assert!(reading.error.is_none(), "{}", told(&reading));
+        assert!(reading.error.is_none(), "{}", summary(&reading));
         reading.capture.bytes.iter().map(|byte| byte.byte).collect::<Vec<_>>()
     };
     assert_eq!(bytes(log), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
@@ -211,24 +212,22 @@ fn times_with_too_many_places_are_rounded_with_a_note() {
         (
             "time_s,STEP\n0,0\n5.000000000000013e-06,1\n0.00001,0\n",
             "LevelsCsv 1/1000000000000000000 [STEP] 0:0 5000000000000:1 10000000000000:0 end 10000000000000\n\
-             - times have more decimal places than fit: they are rounded to the nearest 1e-18 s",
+             - times have too many decimal places and are rounded to the nearest 1e-18 s",
         ),
         // 64 bits are 18 s of these: later times make them coarser.
         (
             "time_s,STEP\n0,0\n0.30000000000000004,1\n2000,0\n",
             "LevelsCsv 1/1000000000000000 [STEP] 0:0 300000000000000:1 2000000000000000000:0 end 2000000000000000000\n\
-             - times have more decimal places than fit: they are rounded to the nearest 1e-15 s",
+             - times have too many decimal places and are rounded to the nearest 1e-15 s",
         ),
         // Changes are not put together.
         (
             "time_s,STEP\n0,0\n1e-18,1\n2e-18,0\n2000,1\n",
-            "LevelsCsv 1/1000000000000000000 [STEP] 0:0 1:1 2:0 end 2\n! line 5: the time “2000” is too long for 64 bits; give \
-             times since the recording's beginning",
+            "LevelsCsv 1/1000000000000000000 [STEP] 0:0 1:1 2:0 end 2\n! line 5: the time “2000” does not fit into 64 bits; use times relative to the start of the recording",
         ),
         (
             "time_s,STEP\n1700000000.25,0\n1700000000.5,1\n",
-            "LevelsCsv 1/100 [STEP] 0:0 25:1 end 25\n- the first time is “1700000000.25”: it is taken as 0, and all others \
-             count from it",
+            "LevelsCsv 1/100 [STEP] 0:0 25:1 end 25\n- the first time is “1700000000.25” and is read as 0; all other times are relative to it",
         ),
     ]);
 }
@@ -256,7 +255,7 @@ fn positions_in_other_units_than_steps_are_refused() {
         let expected = format!(
             "is in {unit}, not in steps; multiply it by the steps per {unit}, round it, and name it position"
         );
-        assert!(error.what.ends_with(&expected), "{error}");
+        assert!(error.message.ends_with(&expected), "{error}");
     }
 }
 
@@ -269,10 +268,10 @@ fn positions_in_steps_are_accepted_and_an_unknown_unit_is_named() {
     }
     let error = read_bytes("time_s,Position [furlong]\n0,0\n1,2\n").error.expect("it is refused");
     assert!(
-        error.what.starts_with("the column “Position [furlong]” is in furlong, which is not a unit"),
+        error.message.starts_with("the column “Position [furlong]” has the unknown unit furlong"),
         "{error}"
     );
-    assert!(error.what.ends_with("steps, step, microsteps, microstep, usteps, pulses, counts, mm, cm, m, um, in, mil, deg, rad or turns"), "{error}");
+    assert!(error.message.ends_with("steps, step, microsteps, microstep, usteps, pulses, counts"), "{error}");
 }
 
 #[test]
@@ -284,7 +283,7 @@ fn two_sample_rates_in_one_file_are_refused() {
         let error = read_bytes(format!("{head}{other}sample,STEP\n0,0\n5,1\n")).error.expect("it is refused");
         let (lines, first) = (head.lines().count() + other.lines().count(), head.lines().count());
         let expected =
-            format!("line {lines}: the sample rate is “250 MHz” here and “1 MHz” in line {first}; ");
+            format!("line {lines}: the sample rate “250 MHz” differs from “1 MHz” in line {first}; ");
         assert!(error.to_string().starts_with(&expected), "{error}");
     }
     let twice = read_bytes("# Sample rate: 1 MHz\n# Sample rate: 1000 kHz\nsample,STEP\n0,0\n5,1\n");
@@ -292,5 +291,5 @@ fn two_sample_rates_in_one_file_are_refused() {
     let sigrok =
         "; CSV generated by libsigrok 0.5.2\n; Samplerate: 1 MHz\n; Samplerate: 2 MHz\nlogic\n0\n1\n";
     let error = read_bytes(sigrok).error.expect("it is refused").to_string();
-    assert!(error.starts_with("line 3: the sample rate is “2 MHz” here and “1 MHz” in line 2; "), "{error}");
+    assert!(error.starts_with("line 3: the sample rate “2 MHz” differs from “1 MHz” in line 2; "), "{error}");
 }

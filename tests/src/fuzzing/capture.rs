@@ -202,7 +202,7 @@ fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<OpenOptions> {
 fn whole(file: &[u8]) -> Capture {
     let with_room = |max_rows| read(Cursor::new(file), &Limits { max_rows }, &mut |_| true);
     let Reading { capture, error } = with_room(MOST);
-    assert!(error.as_ref().is_none_or(|error| !error.what.is_empty()), "refused without a reason");
+    assert!(error.as_ref().is_none_or(|error| !error.message.is_empty()), "refused without a reason");
     in_order(&capture, MOST);
     in_order(&with_room(3).capture, 3);
     let again = with_room(MOST);

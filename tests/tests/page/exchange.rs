@@ -162,7 +162,7 @@ fn a_dropped_scenario_is_shown_and_undo_brings_the_own_work_back() -> Result<()>
             ("cut.json", "{\"bus\":", "invalid JSON"),
             ("huge.csv", "start_cycle,bytes\n1,00\n1,zz\n", "line 3: bytes are “zz”"),
             ("both.csv", "start_cycle,bytes\n5,00\n6,00\n", "both.csv has a problem: "),
-            ("picture.png", "\u{fffd}PNG", "no kind of file that can be read here"),
+            ("picture.png", "\u{fffd}PNG", "unknown format"),
             ("run.vcd", "$timescale 1 ps $end\n", "the file ends before $enddefinitions"),
             ("link.txt", "see https://example.org/#c=1.j.e30.00000000", "cut short or changed"),
         ] {

@@ -8,7 +8,7 @@ use stepscope_core::{
     capture::{
         Capture, ChannelMap,
         capture::Format,
-        read::{Limits, Reading, Wanted, read, read_wanted},
+        read::{Limits, ReadOptions, Reading, read, read_with_options},
         samples,
     },
     inspect::{
@@ -235,9 +235,9 @@ impl CaptureFile {
         let mut report = |bytes: u64| watch.call1(&JsValue::NULL, &(bytes as f64).into()).is_ok();
         let limits = Limits { max_rows: most as usize };
         let channels = map.as_deref().map(ChannelMap::channel_names).unwrap_or_default();
-        let wanted = Wanted { channels, base: base.and_then(|name| name.parse().ok()) };
+        let options = ReadOptions { channels, base: base.and_then(|name| name.parse().ok()) };
         let input = BufReader::with_capacity(PIECE, pieces);
-        let Reading { capture, error } = read_wanted(input, &limits, &wanted, &mut report);
+        let Reading { capture, error } = read_with_options(input, &limits, &options, &mut report);
         Self { capture, error: error.map(|error| error.to_string()), map, loaded: None, options: None }
     }
 
@@ -479,8 +479,9 @@ mod tests {
         let names: Vec<String> = (0..100).map(|at| format!("top.W{at}")).collect();
         let table = format!("Time [s],{}\n0{}\n", names.join(","), ",1".repeat(100));
         let typed = "STEP0=W98,DIR0=!top.W99";
-        let wanted = Wanted { channels: ChannelMap::channel_names(typed), ..Wanted::default() };
-        let capture = read_wanted(io::Cursor::new(table), &Limits::default(), &wanted, &mut |_| true).capture;
+        let options = ReadOptions { channels: ChannelMap::channel_names(typed), ..ReadOptions::default() };
+        let capture =
+            read_with_options(io::Cursor::new(table), &Limits::default(), &options, &mut |_| true).capture;
         assert_eq!((capture.channels.len(), capture.omitted_channels), (64, 36));
         assert_eq!(map_of(&capture, Some(typed)), ("STEP0=top.W98,DIR0=!top.W99".into(), None));
         let (map, error) = map_of(&capture, Some("STEP0=W97"));

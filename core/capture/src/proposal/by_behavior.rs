@@ -17,8 +17,7 @@ const MIN_ENCODER_EDGES: usize = 16;
 const MAX_ENCODER_EDGES: usize = 4096;
 /// Maximum ratio of the pulse widths of two motors.
 const MAX_WIDTH_RATIO: u64 = 4;
-/// Minimum share, in percent, of two successive pulses of a further motor with a pulse of the first motor between them,
-/// from which the channel is too slow for a STEP.
+/// A channel is too slow for a STEP if at least this percentage of its intervals contain pulses of the busiest channel.
 const SLOW_PERCENT: usize = 80;
 
 const LINES: [u32; 2] = [Levels::RX.trailing_zeros(), Levels::TX.trailing_zeros()];
@@ -35,14 +34,15 @@ impl Draft<'_> {
     }
 
     pub(super) fn encoders_by_behavior(&mut self) {
-        let busy = |channel: &usize| self.behavior(*channel).changes() >= MIN_ENCODER_EDGES as u64 / 2;
+        let has_enough_edges =
+            |channel: &usize| self.behavior(*channel).changes() >= MIN_ENCODER_EDGES as u64 / 2;
         let edges = |channel: usize| {
             let mut edges = self.edges(channel);
             edges.truncate(MAX_ENCODER_EDGES);
             (channel, edges)
         };
         let channels: Vec<(usize, Vec<u64>)> =
-            self.unassigned().into_iter().filter(busy).map(edges).collect();
+            self.unassigned().into_iter().filter(has_enough_edges).map(edges).collect();
         let mut used: Vec<usize> = Vec::new();
         for (at, (a, edges_a)) in channels.iter().enumerate() {
             for (b, edges_b) in channels.iter().skip(at + 1) {
@@ -61,8 +61,9 @@ impl Draft<'_> {
         if self.motors.iter().any(|motor| matches!(motor.source, Source::Step(_) | Source::CwCcw(..))) {
             return;
         }
-        let busy = |channel: &usize| self.behavior(*channel).changes() >= 2 * MIN_STEPS;
-        let channels: Vec<usize> = self.unassigned_without_lines().into_iter().filter(busy).collect();
+        let has_enough_edges = |channel: &usize| self.behavior(*channel).changes() >= 2 * MIN_STEPS;
+        let channels: Vec<usize> =
+            self.unassigned_without_lines().into_iter().filter(has_enough_edges).collect();
         let busiest = channels
             .iter()
             .copied()

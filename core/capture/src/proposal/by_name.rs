@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     channel_map::Entry,
-    names::{AXES, Kind, Named, is_of_several},
+    names::{AXES, Kind, SignalName, includes_axis},
     uart::IdleLevel,
 };
 use stepscope_peripheral::signal::Levels;
@@ -39,8 +39,9 @@ impl Draft<'_> {
         self.encoders_by_name();
         if steps.is_empty() && self.motors.is_empty() {
             let dirs = [self.named(Kind::Dir), self.named(Kind::Cw)].concat();
-            let has_dir =
-                |named: &Named| dirs.iter().any(|(_, dir)| dir.axis == named.axis || dir.axis.is_empty());
+            let has_dir = |named: &SignalName| {
+                dirs.iter().any(|(_, dir)| dir.axis == named.axis || dir.axis.is_empty())
+            };
             for (channel, named) in self.named(Kind::Clock).iter().filter(|(_, named)| has_dir(named)) {
                 self.add_step(*channel, named);
             }
@@ -76,7 +77,7 @@ impl Draft<'_> {
     }
 
     /// Adds a motor, unless the channel is a copy of a known STEP: in another scope, or the other line of a pair.
-    fn add_step(&mut self, channel: usize, named: &Named) {
+    fn add_step(&mut self, channel: usize, named: &SignalName) {
         let is_same = |motor: &Motor| {
             motor.axis == named.axis && motor.step().is_some_and(|step| self.is_copy(step, channel))
         };
@@ -103,8 +104,8 @@ impl Draft<'_> {
     }
 
     /// Channels named DIR, and those named CW that are not the pulses of a motor.
-    fn named_dirs(&self) -> Vec<(usize, Named)> {
-        let is_dir = |(channel, named): &(usize, Named)| {
+    fn named_dirs(&self) -> Vec<(usize, SignalName)> {
+        let is_dir = |(channel, named): &(usize, SignalName)| {
             !named.is_pulse && self.motors.iter().all(|motor| !motor.has(*channel))
         };
         let mut dirs = self.named(Kind::Dir);
@@ -113,13 +114,13 @@ impl Draft<'_> {
     }
 
     /// Motors without a DIR, and DIR channels of the same axis, best first.
-    fn pairs_of_one_axis(&self, dirs: &[(usize, Named)]) -> Vec<Pair> {
+    fn pairs_of_one_axis(&self, dirs: &[(usize, SignalName)]) -> Vec<Pair> {
         let mut pairs: Vec<Pair> = Vec::new();
         for (at, motor) in self.motors.iter().enumerate().filter(|(_, motor)| motor.lacks_dir()) {
             let is_like = |other: &Motor| other.lacks_dir() && other.axis == motor.axis;
             let motors = self.motors.iter().filter(|other| is_like(other)).count();
             let order = self.motors.iter().take(at).filter(|other| is_like(other)).count();
-            let of_axis: Vec<(usize, &(usize, Named))> =
+            let of_axis: Vec<(usize, &(usize, SignalName))> =
                 dirs.iter().enumerate().filter(|(_, (_, named))| named.axis == motor.axis).collect();
             for (dir_order, (dir, (channel, named))) in of_axis.iter().enumerate() {
                 // Equal numbers of STEP and DIR are paired in order.
@@ -138,7 +139,7 @@ impl Draft<'_> {
 
     /// Assigns a DIR of several axes to all of them, and a DIR without an axis to all motors without a DIR. The others
     /// belong to motors whose STEP is unknown.
-    fn share_dirs(&mut self, dirs: &[(usize, Named)], unused: Vec<(usize, Named)>) {
+    fn share_dirs(&mut self, dirs: &[(usize, SignalName)], unused: Vec<(usize, SignalName)>) {
         let mut without_axis = dirs.iter().filter(|(_, named)| named.axis.is_empty());
         let only_without_axis = without_axis.next().filter(|_| without_axis.next().is_none());
         let common = unused.iter().find(|(_, named)| named.axis.is_empty()).or(only_without_axis);
@@ -151,7 +152,7 @@ impl Draft<'_> {
         // X1 and X2 share the DIR of X; X and Y that of XY.
         let of_group = |axis: &str| {
             let found = unused.iter().find(|(_, named)| {
-                !named.axis.is_empty() && stem(axis) == named.axis || is_of_several(&named.axis, axis)
+                !named.axis.is_empty() && stem(axis) == named.axis || includes_axis(&named.axis, axis)
             });
             found.map(|(channel, _)| *channel)
         };
@@ -193,7 +194,7 @@ impl Draft<'_> {
 }
 
 /// The channel of the same axis, preferably in the same scope.
-fn partner(named: &Named, others: &[(usize, Named)]) -> Option<usize> {
+fn partner(named: &SignalName, others: &[(usize, SignalName)]) -> Option<usize> {
     let of_axis = others.iter().filter(|(_, other)| other.axis == named.axis);
     let best = of_axis.max_by_key(|(channel, other)| (other.scope == named.scope, usize::MAX - channel));
     best.map(|(channel, _)| *channel)

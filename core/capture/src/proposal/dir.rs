@@ -52,7 +52,7 @@ impl Draft<'_> {
         let channels = self.unassigned_without_lines();
         let mut candidates: Vec<Candidate> =
             channels.into_iter().flat_map(|channel| self.candidates(channel, &motors)).collect();
-        let has_one_each = order(&mut candidates, &motors);
+        let has_one_each = mark_out_of_order(&mut candidates, &motors);
         candidates.sort_unstable();
         let first = candidates.first().map(|candidate| candidate.channel);
         let is_single = candidates.iter().all(|candidate| Some(candidate.channel) == first);
@@ -140,7 +140,7 @@ impl Draft<'_> {
 }
 
 /// With one candidate per motor, marks those that are not in the order of the motors, and returns true.
-fn order(candidates: &mut [Candidate], motors: &[MotorEdges]) -> bool {
+fn mark_out_of_order(candidates: &mut [Candidate], motors: &[MotorEdges]) -> bool {
     let fitting = candidates.iter().filter(|candidate| !candidate.fit.has_one_level);
     let fitting: BTreeSet<usize> = fitting.map(|candidate| candidate.channel).collect();
     if fitting.len() != motors.len() {

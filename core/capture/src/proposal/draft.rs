@@ -8,7 +8,7 @@ use crate::{
     capture::{Capture, Change},
     changes::MAX_INSPECTED,
     channel_map::Entry,
-    names::{Kind, Meaning, Named, are_indexed},
+    names::{Kind, Meaning, SignalName, are_indexed},
 };
 
 pub(super) struct Draft<'a> {
@@ -27,7 +27,7 @@ impl<'a> Draft<'a> {
         let indexed = are_indexed(names());
         let changes: Vec<Change> = capture.changes.iter().take(MAX_INSPECTED).collect();
         let behavior = behaviors(&changes, capture.channels.len());
-        let mut meanings: Vec<Meaning> = names().map(|name| Meaning::of(name, indexed)).collect();
+        let mut meanings: Vec<Meaning> = names().map(|name| Meaning::from_name(name, indexed)).collect();
         recognize_joined(&mut meanings, names());
         renumber_pins(&mut meanings);
         Self { capture, meanings, changes, behavior, motors: Vec::new(), bus_signals: Vec::new() }
@@ -38,8 +38,8 @@ impl<'a> Draft<'a> {
     }
 
     /// Channels whose name means this kind; the positive line of a pair comes first.
-    pub(super) fn named(&self, kind: Kind) -> Vec<(usize, Named)> {
-        let mut found: Vec<(usize, Named)> = Vec::new();
+    pub(super) fn named(&self, kind: Kind) -> Vec<(usize, SignalName)> {
+        let mut found: Vec<(usize, SignalName)> = Vec::new();
         for (channel, meaning) in self.meanings.iter().enumerate() {
             if let Meaning::Signal(named) = meaning
                 && named.kind == kind
@@ -96,13 +96,17 @@ impl<'a> Draft<'a> {
 
 /// Recognizes names of one word: `FLSTEP` and `FLDIR` are the signals of a motor, since their other letters are equal.
 fn recognize_joined<'a>(meanings: &mut [Meaning], names: impl Iterator<Item = &'a str>) {
-    let joined: Vec<Option<Named>> = names
+    let joined: Vec<Option<SignalName>> = names
         .zip(meanings.iter())
-        .map(|(name, meaning)| if *meaning == Meaning::Unknown { Meaning::joined(name) } else { None })
+        .map(
+            |(name, meaning)| {
+                if *meaning == Meaning::Unknown { Meaning::from_single_word(name) } else { None }
+            },
+        )
         .collect();
     for (meaning, named) in meanings.iter_mut().zip(&joined) {
         let Some(named) = named else { continue };
-        let is_partner = |other: &Named| other.axis == named.axis && other.kind != named.kind;
+        let is_partner = |other: &SignalName| other.axis == named.axis && other.kind != named.kind;
         if joined.iter().flatten().any(is_partner) {
             *meaning = Meaning::Signal(named.clone());
         }

@@ -31,7 +31,7 @@ pub(super) struct Annotations {
     is_text: bool,
     has_bits: bool,
     /// 0 and 1 without a class were dropped as bits.
-    has_unclear_bits: bool,
+    has_ambiguous_bits: bool,
     others: Names,
 }
 
@@ -143,7 +143,7 @@ impl Annotations {
             digits: Digits::new(),
             is_text: false,
             has_bits: false,
-            has_unclear_bits: false,
+            has_ambiguous_bits: false,
             others: Names::new(),
         }
     }
@@ -168,30 +168,29 @@ impl Annotations {
         }
         let guess = self.digits.guess();
         let is_hexadecimal =
-            matches!(guess, Guess::Sure(Base::Hexadecimal) | Guess::Unclear(Base::Hexadecimal, _));
+            matches!(guess, Guess::Certain(Base::Hexadecimal) | Guess::Ambiguous(Base::Hexadecimal, _));
         if self.is_text && !is_hexadecimal {
             return Err(NO_BYTES.into());
         }
         match guess {
-            Guess::Sure(Base::Decimal) if self.has_unclear_bits => Err(
-                "0 and 1 may be bits or decimal bytes; print the bytes alone (sigrok-cli -A uart=rx-data) or with \
+            Guess::Certain(Base::Decimal) if self.has_ambiguous_bits => Err(
+                "0 and 1 may be bits or decimal bytes; print only the bytes (sigrok-cli -A uart=rx-data) or with \
                  format=hex"
                     .into(),
             ),
-            Guess::Sure(base) => {
+            Guess::Certain(base) => {
                 if base != Base::Hexadecimal {
-                    self.recorder.leave_out(format!("the bytes are read as {}", base.name()));
+                    self.recorder.note(format!("the bytes are read as {}", base.name()));
                 }
                 Ok(base)
             }
-            Guess::Unclear(Base::Hexadecimal, _) => {
-                self.recorder.leave_out(
-                    "the bytes may be hexadecimal or decimal: they are read as hexadecimal; if they are decimal, print \
-                     them with format=hex",
+            Guess::Ambiguous(Base::Hexadecimal, _) => {
+                self.recorder.note(
+                    "the bytes may be hexadecimal or decimal and are read as hexadecimal; if they are decimal, print them with format=hex",
                 );
                 Ok(Base::Hexadecimal)
             }
-            Guess::Unclear(one, other) => Err(format!(
+            Guess::Ambiguous(one, other) => Err(format!(
                 "the bytes may be {} or {}; print them with format=hex (sigrok-cli -P uart:format=hex)",
                 one.name(),
                 other.name()
@@ -215,7 +214,27 @@ impl Annotations {
         });
         let Some(wrong) = wrong else { return Ok(()) };
         self.recorder.capture.bytes.truncate(wrong);
-        Err(format!("byte {wrong}, from 0, is not {}; print all of them with format=hex", base.name()))
+        Err(format!("byte {wrong}, from 0, is not {}; print all bytes with format=hex", base.name()))
+    }
+
+    /// Skips an annotation that is not a byte; uses start bits and frame errors.
+    fn skip(&mut self, annotation: &Annotation, may_be_data: bool) -> Result<(), String> {
+        let text = annotation.text.to_lowercase();
+        self.is_text |= may_be_data && (annotation.text.chars().count() == 1 || is_control(&annotation.text));
+        self.has_ambiguous_bits |= annotation.class.is_empty() && matches!(text.as_str(), "0" | "1");
+        if matches!(text.as_str(), "start bit" | "start" | "s") {
+            self.has_bits = true;
+            let channel = self.channel(annotation)?;
+            self.line(channel).start = annotation.samples.map(|(from, _)| from);
+        } else if text.starts_with("frame error") {
+            let channel = self.channel(annotation)?;
+            let last = self.line(channel).last;
+            if let Some(byte) = last.and_then(|(at, _)| self.recorder.capture.bytes.get_mut(at)) {
+                byte.framing_error = true;
+            }
+        }
+        self.others.add(&annotation.text);
+        Ok(())
     }
 
     fn line(&mut self, channel: u8) -> &mut Line {
@@ -237,35 +256,16 @@ impl Reader for Annotations {
         let is_timed = annotation.samples.is_some();
         if *self.timed.get_or_insert(is_timed) != is_timed {
             return Err(format!(
-                "{} {} samples, and the lines before {}; export all with them, or all without",
+                "{} {} sample numbers, unlike the lines before; export all lines with them, or all without",
                 quoted(line),
                 if is_timed { "has" } else { "has no" },
-                if is_timed { "have none" } else { "have" },
             ));
         }
-        let text = annotation.text.to_lowercase();
         let may_be_data = annotation.may_be_data(self.has_bits);
         let value = Value::of(annotation.text.as_bytes()).filter(|_| may_be_data);
-        let Some(value) = value else {
-            self.is_text |=
-                may_be_data && (annotation.text.chars().count() == 1 || is_control(&annotation.text));
-            self.has_unclear_bits |= annotation.class.is_empty() && matches!(text.as_str(), "0" | "1");
-            if text == "start bit" || text == "start" || text == "s" {
-                self.has_bits = true;
-                let channel = self.channel(&annotation)?;
-                self.line(channel).start = annotation.samples.map(|(from, _)| from);
-            } else if text.starts_with("frame error") {
-                let channel = self.channel(&annotation)?;
-                let last = self.line(channel).last;
-                if let Some(byte) = last.and_then(|(at, _)| self.recorder.capture.bytes.get_mut(at)) {
-                    byte.framing_error = true;
-                }
-            }
-            self.others.add(&annotation.text);
-            return Ok(());
-        };
+        let Some(value) = value else { return self.skip(&annotation, may_be_data) };
         let channel = self.channel(&annotation)?;
-        let place = self.recorder.capture.bytes.len();
+        let index = self.recorder.capture.bytes.len();
         let Line { start, last } = core::mem::take(self.line(channel));
         let tick = match (annotation.samples, start) {
             (Some(_), Some(start)) => start,
@@ -273,18 +273,17 @@ impl Reader for Annotations {
                 self.is_data = true;
                 from
             }
-            (None, _) => place as u64,
+            (None, _) => index as u64,
         };
         if let Some((_, before)) = last.filter(|(_, before)| tick < *before) {
             return Err(format!(
-                "sample {tick} comes after sample {before} of the same line; sort the lines by sample, and give one \
-                 recording per file"
+                "sample {tick} follows sample {before} of the same channel; sort the lines by sample and use one recording per file"
             ));
         }
-        self.line(channel).last = Some((place, tick));
+        self.line(channel).last = Some((index, tick));
         self.recorder.byte(TimedByte { tick, channel, byte: 0, framing_error: false })?;
         self.digits.take(annotation.text.as_bytes());
-        self.values.try_reserve(1).map_err(|_| "no memory for more bytes; export a shorter time")?;
+        self.values.try_reserve(1).map_err(|_| "not enough memory for more bytes; export a shorter time")?;
         self.values.push(value);
         Ok(())
     }
@@ -292,24 +291,20 @@ impl Reader for Annotations {
     fn finish(mut self) -> (Capture, Result<(), String>) {
         let found = self.set_bytes();
         self.recorder.sort_bytes();
-        if !self.others.is_empty() {
-            self.recorder.leave_out(format!("other annotations skipped: {}", self.others.to_text()));
-        }
+        self.recorder.note_skipped("other annotations", &self.others);
         if self.is_data {
-            self.recorder.leave_out(
-                "bytes without an annotated start bit are timed by their first data bit, one bit late",
-            );
+            self.recorder
+                .note("bytes without an annotated start bit are timed by their first data bit, one bit late");
         }
         let is_empty = self.recorder.capture.is_empty();
         let named = |name: &str| self.recorder.capture.channels.iter().any(|channel| channel.name == name);
         if named("RX") && named("TX") {
-            self.recorder.leave_out(
-                "RX and TX are named as in the decoder, and kept apart: RX is taken as the line to the controller; if that \
-                 is TX, exchange the channels of RX and TX",
+            self.recorder.note(
+                "RX and TX are named as in the decoder; RX is read as the line to the controller: exchange RX and TX if it is TX",
             );
         }
         if self.is_unnamed && !is_empty {
-            self.recorder.leave_out("no annotation names RX or TX: all bytes are assigned to one line");
+            self.recorder.note("no annotation names RX or TX: all bytes are assigned to one line");
         }
         let missing = if found.is_err() {
             found

@@ -62,8 +62,8 @@ impl Base {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Guess {
-    Sure(Base),
-    Unclear(Base, Base),
+    Certain(Base),
+    Ambiguous(Base, Base),
     Unknown,
 }
 
@@ -125,9 +125,9 @@ impl Digits {
             _ => None,
         };
         match padded {
-            Some(base) if may_be_decimal => Guess::Unclear(base, Base::Decimal),
-            Some(base) => Guess::Sure(base),
-            None if may_be_decimal && self.lengths != 0 => Guess::Sure(Base::Decimal),
+            Some(base) if may_be_decimal => Guess::Ambiguous(base, Base::Decimal),
+            Some(base) => Guess::Certain(base),
+            None if may_be_decimal && self.lengths != 0 => Guess::Certain(Base::Decimal),
             None => Guess::Unknown,
         }
     }
@@ -139,19 +139,19 @@ mod tests {
 
     #[test]
     fn digits_determine_the_base_or_are_ambiguous() {
-        let hex_or_decimal = Guess::Unclear(Base::Hexadecimal, Base::Decimal);
+        let hex_or_decimal = Guess::Ambiguous(Base::Hexadecimal, Base::Decimal);
         for (words, expected) in [
-            ("55 AA 01", Guess::Sure(Base::Hexadecimal)),
-            ("41 05", Guess::Sure(Base::Hexadecimal)),
-            ("0x41 10", Guess::Sure(Base::Hexadecimal)),
+            ("55 AA 01", Guess::Certain(Base::Hexadecimal)),
+            ("41 05", Guess::Certain(Base::Hexadecimal)),
+            ("0x41 10", Guess::Certain(Base::Hexadecimal)),
             ("41 42", hex_or_decimal),
-            ("65 173 7", Guess::Sure(Base::Decimal)),
-            ("180 190", Guess::Sure(Base::Decimal)),
-            ("0 1", Guess::Sure(Base::Decimal)),
-            ("101 102", Guess::Unclear(Base::Octal, Base::Decimal)),
-            ("101 002", Guess::Sure(Base::Octal)),
-            ("301 377", Guess::Sure(Base::Octal)),
-            ("01000001 00000000", Guess::Sure(Base::Binary)),
+            ("65 173 7", Guess::Certain(Base::Decimal)),
+            ("180 190", Guess::Certain(Base::Decimal)),
+            ("0 1", Guess::Certain(Base::Decimal)),
+            ("101 102", Guess::Ambiguous(Base::Octal, Base::Decimal)),
+            ("101 002", Guess::Certain(Base::Octal)),
+            ("301 377", Guess::Certain(Base::Octal)),
+            ("01000001 00000000", Guess::Certain(Base::Binary)),
             ("300 480", Guess::Unknown),
             ("A 10", Guess::Unknown),
             ("007 65", Guess::Unknown),

@@ -6,7 +6,10 @@
 
 use super::decimal::{Decimal, power_of_ten, whole};
 
+/// Maximum digits of a fraction of a second.
 const MAX_FRACTION: usize = 12;
+/// Days from March 1 of year 0 to January 1, 1970.
+const EPOCH_DAY: i128 = 719_468;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Stamp {
@@ -22,7 +25,7 @@ pub(super) enum Dated {
     No,
     Yes,
     /// Day and month cannot be told apart, as in `05/06/2026`.
-    Unclear([u64; 3]),
+    Ambiguous([u64; 3]),
 }
 
 impl Stamp {
@@ -48,13 +51,14 @@ impl Stamp {
         Some(Self { seconds: Decimal { mantissa, ..of_day }, dated, length, has_seconds })
     }
 
-    /// `12:34` may also be two bytes.
+    /// `12:34` may also be second_length bytes.
     pub(super) fn without_seconds(text: &[u8]) -> Option<Self> {
         let (seconds, length) = minutes(text)?;
         Some(Self { seconds, dated: Dated::No, length, has_seconds: false })
     }
 }
 
+/// A number of up to four digits, and its length.
 fn number(text: &[u8]) -> Option<(u64, usize)> {
     let length = text.iter().take(5).take_while(|byte| byte.is_ascii_digit()).count();
     let value = text.get(..length).and_then(whole)?;
@@ -62,16 +66,16 @@ fn number(text: &[u8]) -> Option<(u64, usize)> {
 }
 
 fn date(text: &[u8]) -> Option<(i128, Dated, usize)> {
-    let (first, one) = number(text)?;
-    let mark = *text.get(one).filter(|mark| b"-/.".contains(mark))?;
-    let (second, two) = number(text.get(one + 1..)?)?;
-    text.get(one + 1 + two).filter(|other| **other == mark)?;
-    let (third, three) = number(text.get(one + two + 2..)?)?;
-    let length = one + two + three + 2;
-    if one == 4 && two <= 2 && three <= 2 {
+    let (first, first_length) = number(text)?;
+    let mark = *text.get(first_length).filter(|mark| b"-/.".contains(mark))?;
+    let (second, second_length) = number(text.get(first_length + 1..)?)?;
+    text.get(first_length + 1 + second_length).filter(|other| **other == mark)?;
+    let (third, third_length) = number(text.get(first_length + second_length + 2..)?)?;
+    let length = first_length + second_length + third_length + 2;
+    if first_length == 4 && second_length <= 2 && third_length <= 2 {
         return Some((days(first, second, third)?, Dated::Yes, length));
     }
-    if one > 2 || two > 2 || three != 4 {
+    if first_length > 2 || second_length > 2 || third_length != 4 {
         return None;
     }
     // With points, or if the number is not a month, the day comes first.
@@ -81,9 +85,10 @@ fn date(text: &[u8]) -> Option<(i128, Dated, usize)> {
     if second > 12 {
         return Some((days(third, first, second)?, Dated::Yes, length));
     }
-    Some((days(third, second, first)?, Dated::Unclear([first, second, third]), length))
+    Some((days(third, second, first)?, Dated::Ambiguous([first, second, third]), length))
 }
 
+/// Days since 1970.
 fn days(year: u64, month: u64, day: u64) -> Option<i128> {
     if !(1..=12).contains(&month) || !(1..=31).contains(&day) {
         return None;
@@ -91,22 +96,23 @@ fn days(year: u64, month: u64, day: u64) -> Option<i128> {
     // Counting from March 1 of year 0 puts the leap day at the end of the year.
     let (years, months) = if month > 2 { (year, month - 3) } else { (year.checked_sub(1)?, month + 9) };
     let days = 365 * years + years / 4 - years / 100 + years / 400 + (153 * months + 2) / 5 + day - 1;
-    Some(i128::from(days) - 719_468)
+    Some(i128::from(days) - EPOCH_DAY)
 }
 
+/// Seconds of `12:00:00.125`, and the length of the text.
 fn clock(text: &[u8]) -> Option<(Decimal, usize)> {
-    let (hour, one) = number(text).filter(|(_, length)| *length <= 2)?;
+    let (hour, first_length) = number(text).filter(|(_, length)| *length <= 2)?;
     let part = |from: usize| {
         text.get(from).filter(|mark| **mark == b':')?;
         let (value, length) = number(text.get(from + 1..)?)?;
         (length == 2).then_some(value)
     };
-    let (minute, second) = (part(one)?, part(one + 3)?);
+    let (minute, second) = (part(first_length)?, part(first_length + 3)?);
     if hour > 23 || minute > 59 || second > 60 {
         return None;
     }
     let whole_seconds = i128::from(hour * 3600 + minute * 60 + second);
-    let length = one + 6;
+    let length = first_length + 6;
     let digits = text.get(length + 1..).unwrap_or_default();
     let count = digits.iter().take_while(|digit| digit.is_ascii_digit()).count();
     let has_fraction = match text.get(length) {
@@ -127,18 +133,20 @@ fn clock(text: &[u8]) -> Option<(Decimal, usize)> {
 }
 
 fn minutes(text: &[u8]) -> Option<(Decimal, usize)> {
-    let (hour, one) = number(text).filter(|(_, length)| *length <= 2)?;
-    text.get(one).filter(|mark| **mark == b':')?;
-    let (minute, two) = number(text.get(one + 1..)?)?;
-    let is_end = match text.get(one + 3..).unwrap_or_default() {
+    let (hour, first_length) = number(text).filter(|(_, length)| *length <= 2)?;
+    text.get(first_length).filter(|mark| **mark == b':')?;
+    let (minute, second_length) = number(text.get(first_length + 1..)?)?;
+    let is_end = match text.get(first_length + 3..).unwrap_or_default() {
         [b':', next, ..] => !next.is_ascii_digit(),
         [next, ..] => !next.is_ascii_alphanumeric(),
         [] => true,
     };
     let mantissa = i128::from(hour * 3600 + minute * 60);
-    (hour <= 23 && two == 2 && minute <= 59 && is_end).then_some((Decimal { mantissa, places: 0 }, one + 3))
+    (hour <= 23 && second_length == 2 && minute <= 59 && is_end)
+        .then_some((Decimal { mantissa, places: 0 }, first_length + 3))
 }
 
+/// Seconds of a time zone such as `+01:00`, and the length of the text.
 fn zone(text: &[u8]) -> Option<(i64, usize)> {
     let sign = match text.first()? {
         b'Z' | b'z' => return Some((0, 1)),
@@ -185,6 +193,6 @@ mod tests {
             assert_eq!(found, expected, "{text}");
         }
         let unclear = Stamp::parse(b"05/06/2026 00:00:00").map(|stamp| stamp.dated);
-        assert_eq!(unclear, Some(Dated::Unclear([5, 6, 2026])));
+        assert_eq!(unclear, Some(Dated::Ambiguous([5, 6, 2026])));
     }
 }

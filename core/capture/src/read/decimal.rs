@@ -19,7 +19,7 @@ pub struct Decimal {
     pub places: u32,
 }
 
-/// Without leading zeros; more do not fit.
+/// Maximum number of digits without leading zeros.
 const MAX_DIGITS: u32 = 30;
 
 impl Decimal {
@@ -32,26 +32,27 @@ impl Decimal {
             _ => (false, text),
         };
         // 18 digits fit into 64 bits, which is faster and enough for most files.
-        let (mut mantissa, mut wide) = (0_u64, None::<u128>);
-        let (mut digits, mut places, mut point) = (0_u32, 0_u32, false);
-        let mut any = false;
+        let (mut mantissa, mut wide_mantissa) = (0_u64, None::<u128>);
+        let (mut digits, mut places, mut has_point) = (0_u32, 0_u32, false);
+        let mut has_digit = false;
         let mut rest = text;
         while let [byte, after @ ..] = rest {
             match byte {
                 b'0'..=b'9' => {
-                    any = true;
+                    has_digit = true;
                     let digit = byte - b'0';
                     digits += u32::from(digits > 0 || digit > 0);
-                    places += u32::from(point);
+                    places += u32::from(has_point);
                     if digits <= 18 {
                         mantissa = mantissa * 10 + u64::from(digit);
                     } else if digits <= MAX_DIGITS {
-                        wide = Some(wide.unwrap_or_else(|| mantissa.into()) * 10 + u128::from(digit));
+                        wide_mantissa =
+                            Some(wide_mantissa.unwrap_or_else(|| mantissa.into()) * 10 + u128::from(digit));
                     } else {
                         return None;
                     }
                 }
-                b'.' if !point => point = true,
+                b'.' if !has_point => has_point = true,
                 _ => break,
             }
             rest = after;
@@ -61,9 +62,9 @@ impl Decimal {
             [b'e' | b'E', power @ ..] => exponent(power)?,
             _ => return None,
         };
-        let mantissa = i128::try_from(wide.unwrap_or_else(|| mantissa.into())).ok()?;
+        let mantissa = i128::try_from(wide_mantissa.unwrap_or_else(|| mantissa.into())).ok()?;
         let number = Self { mantissa: if negative { -mantissa } else { mantissa }, places };
-        if any { number.shifted(exponent) } else { None }
+        if has_digit { number.shifted(exponent) } else { None }
     }
 
     pub(super) fn shifted(self, exponent: i32) -> Option<Self> {

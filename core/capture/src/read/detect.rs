@@ -1,4 +1,4 @@
-//! Detects the kind of a file from its first bytes: by signatures, then by a table's column names, then by trying to
+//! Detects the format of a file from its first bytes: by signatures, then by a table's column names, then by trying to
 //! read the first lines.
 
 use super::{
@@ -19,60 +19,57 @@ use crate::{
     names::{Kind, Meaning},
 };
 
-pub(super) const UNKNOWN: &str = "no kind of file that can be read here; give a value change dump (.vcd), a session or \
-    a table of sigrok or PulseView (.sr, .csv), a table of levels (Saleae Logic, DSView, WaveForms, Kingst, your own), a \
-    table of Saleae Logic's decoded bytes, annotations of sigrok's UART decoder, a trace or a table of edges of Stepscope, \
-    bytes in hexadecimal, a hex dump (hexdump -C, xxd, od), a serial log with times, step commands of Klipper, or a table \
-    of times and positions";
+pub(super) const UNKNOWN: &str = "unknown format; use a value change dump (.vcd), a session or a table of sigrok (.sr, .csv), \
+    another table of levels, positions or bytes (.csv), a hex dump, a serial log, or step commands of Klipper";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Found {
+pub(super) struct Detected {
     pub(super) format: Format,
     /// Without a unit, whole numbers are not seconds.
     pub(super) whole_times: bool,
     pub(super) table: Option<hex_table::Table>,
     /// Columns that are not levels, by bit: a count next to STEP and DIR.
-    pub(super) others: u64,
+    pub(super) skipped_columns: u64,
 }
 
-impl Found {
+impl Detected {
     const fn of(format: Format) -> Self {
-        Self { format, whole_times: false, table: None, others: 0 }
+        Self { format, whole_times: false, table: None, skipped_columns: 0 }
     }
 }
 
-/// A shorter head is the whole file; three bytes may have been a byte order mark.
-const FULL: usize = (1 << 16) - 3;
+/// A shorter head is the entire file; three bytes may have been a byte order mark.
+const FULL_HEAD: usize = (1 << 16) - 3;
 const MAX_LINES: usize = 200;
 
-pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Found, String> {
+pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Detected, String> {
     if head.trim_ascii().is_empty() {
         return Err("the file is empty; record or export again".into());
     }
     if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
-        return Ok(Found::of(Format::SigrokSession));
+        return Ok(Detected::of(Format::SigrokSession));
     }
-    if let Some(what) = binary(head) {
-        return Err(what.into());
+    if let Some(message) = binary(head) {
+        return Err(message.into());
     }
     // The end of the head may cut off the last line or word.
     let cut = head
         .iter()
         .rposition(|byte| *byte == b'\n')
         .or_else(|| head.iter().rposition(u8::is_ascii_whitespace));
-    let text = cut.filter(|_| head.len() >= FULL).and_then(|end| head.get(..end)).unwrap_or(head);
+    let text = cut.filter(|_| head.len() >= FULL_HEAD).and_then(|end| head.get(..end)).unwrap_or(head);
     let lines: Vec<&[u8]> = text
         .split(|byte| *byte == b'\n')
         .map(<[u8]>::trim_ascii)
         .filter(|line| !line.is_empty() && !line.starts_with(b"META "))
         .take(MAX_LINES)
         .collect();
-    let Some(first) = lines.first() else { return Ok(Found::of(Format::SigrokCsv)) };
+    let Some(first) = lines.first() else { return Ok(Detected::of(Format::SigrokCsv)) };
     if first.starts_with(b"$") {
-        return Ok(Found::of(Format::Vcd));
+        return Ok(Detected::of(Format::Vcd));
     }
     if klipper::is_klipper(head) || head.starts_with(b"Start printer at") {
-        return Ok(Found::of(Format::Klipper));
+        return Ok(Detected::of(Format::Klipper));
     }
     let comments = lines.iter().take_while(|line| is_comment(line) && !is_sample(line)).count();
     let (before, table) = lines.split_at(comments);
@@ -86,18 +83,18 @@ pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Found, String> {
         || before.first().is_some_and(|line| line.starts_with(b";") && sigrok::is_comment(line))
             && !of_table.is_some_and(|found| matches!(found.format, Format::LevelsCsv | Format::SaleaeCsv));
     if is_of_sigrok {
-        return Ok(Found::of(Format::SigrokCsv));
+        return Ok(Detected::of(Format::SigrokCsv));
     }
     if lines.iter().take(20).any(|line| is_of_scope(line)) {
         return Err(SCOPE.into());
     }
     of_table.or_else(|| by_rows(if table.is_empty() { &lines } else { table })).ok_or_else(|| {
-        format!("{}: no kind of file that can be read here; {}", quoted(first), nearest::nearest(&lines))
+        format!("unknown format, beginning with {}; {}", quoted(first), nearest::nearest(&lines))
     })
 }
 
-const SCOPE: &str = "a table of an oscilloscope's voltages; export digital channels, or write a table such as time_us,STEP,DIR \
-    with 0 below the threshold of the input and 1 above it";
+const SCOPE: &str = "voltages of an oscilloscope cannot be read; export digital channels, or use a table such as \
+    time_us,STEP,DIR with 0 below the threshold of the input and 1 above it";
 
 fn is_of_scope(line: &[u8]) -> bool {
     let mut names = fields(line, separator(line));
@@ -106,25 +103,25 @@ fn is_of_scope(line: &[u8]) -> bool {
 
 fn binary(head: &[u8]) -> Option<&'static str> {
     if head.starts_with(b"\x1f\x8b") {
-        return Some("the file is compressed (gzip); uncompress it: gunzip");
+        return Some("the file is compressed (gzip); use gunzip");
     }
     if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") {
         return Some("the text is UTF-16; save it as UTF-8");
     }
     if head.starts_with(b"<SALEAE>") {
-        return Some("a binary export of Saleae Logic; export as CSV");
+        return Some("binary exports of Saleae Logic cannot be read; export as CSV");
     }
     // A header block of 329 bytes, or the whole file packed by gzip.
     if head.starts_with(b"\0\0\0\0\0\0\0\x01\x49") || head.first() == Some(&0xfe) {
         return Some(
-            "a waveform of GTKWave (FST); make a value change dump of it: fst2vcd -f file.fst -o file.vcd",
+            "waveforms of GTKWave (FST) cannot be read; convert with fst2vcd -f file.fst -o file.vcd",
         );
     }
     head.contains(&0).then_some(UNKNOWN)
 }
 
 /// Uses the first rows if a name is ambiguous: an encoder has both lines and a position.
-fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Found>, String> {
+fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Detected>, String> {
     let mut columns = Fields::new();
     let separator = separator(line);
     if columns.split(line, separator).is_err() {
@@ -132,18 +129,18 @@ fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Fou
     }
     let names = column_names(&columns, separator);
     if names.iter().any(|name| name == "logic") {
-        return Ok(Some(Found::of(Format::SigrokCsv)));
+        return Ok(Some(Detected::of(Format::SigrokCsv)));
     }
     if saleae::is_head(&names) {
-        return Ok(Some(Found::of(Format::SaleaeBytes)));
+        return Ok(Some(Detected::of(Format::SaleaeBytes)));
     }
     if let Some(table) = hex_table::by_head(line, rows, base)? {
-        return Ok(Some(Found { table: Some(table), ..Found::of(Format::HexBytes) }));
+        return Ok(Some(Detected { table: Some(table), ..Detected::of(Format::HexBytes) }));
     }
     Ok(by_names(&names, separator, rows))
 }
 
-fn by_names(names: &[String], separator: u8, rows: &[&[u8]]) -> Option<Found> {
+fn by_names(names: &[String], separator: u8, rows: &[&[u8]]) -> Option<Detected> {
     let Layout { time, unit, .. } = Layout::of(names)?;
     names.get(1)?;
     let times = || {
@@ -153,7 +150,7 @@ fn by_names(names: &[String], separator: u8, rows: &[&[u8]]) -> Option<Found> {
     };
     // sigrok writes this if it does not know the rate; all numbers are then 0.
     if names.first().is_some_and(|name| name == "samples") && times().all(|time| time == b"0") {
-        return Some(Found::of(Format::SigrokCsv));
+        return Some(Detected::of(Format::SigrokCsv));
     }
     let whole_times = times().all(|time| Decimal::parse(time).is_none_or(|time| time.places == 0))
         && times().any(|time| Decimal::parse(time).is_some());
@@ -162,14 +159,14 @@ fn by_names(names: &[String], separator: u8, rows: &[&[u8]]) -> Option<Found> {
         let mut all = fields(row, separator).enumerate();
         all.all(|(at, field)| at == time || is_level(field))
     });
-    let found = |format| Some(Found { whole_times, ..Found::of(format) });
+    let found = |format| Some(Detected { whole_times, ..Detected::of(format) });
     let lower = |name: &String| name.trim().to_lowercase();
     let named = names.iter().enumerate().any(|(at, name)| at != time && lower(name).starts_with("pos"));
-    let others = others_than_levels(names, time, &|at| {
+    let skipped = columns_without_levels(names, time, &|at| {
         rows.iter().all(|row| fields(row, separator).nth(at).is_some_and(is_level))
     });
-    if others.is_none() && named
-        || others.is_none() && !levels && positions::position_column(names, time).is_some()
+    if skipped.is_none() && named
+        || skipped.is_none() && !levels && positions::position_column(names, time).is_some()
     {
         return found(Format::PositionsCsv);
     }
@@ -179,12 +176,12 @@ fn by_names(names: &[String], separator: u8, rows: &[&[u8]]) -> Option<Found> {
         _ if first == "time [s]" || first == "time[s]" => found(Format::SaleaeCsv),
         _ => found(Format::LevelsCsv),
     }
-    .map(|found| Found { others: others.unwrap_or(0), ..found })
+    .map(|found| Detected { skipped_columns: skipped.unwrap_or(0), ..found })
 }
 
 /// With levels of STEP and DIR, other columns such as a count are skipped.
-fn others_than_levels(names: &[String], time: usize, is_level: &dyn Fn(usize) -> bool) -> Option<u64> {
-    let meanings: Vec<Meaning> = names.iter().map(|name| Meaning::of(name, false)).collect();
+fn columns_without_levels(names: &[String], time: usize, is_level: &dyn Fn(usize) -> bool) -> Option<u64> {
+    let meanings: Vec<Meaning> = names.iter().map(|name| Meaning::from_name(name, false)).collect();
     let has = |kind: Kind| {
         let is_kind = |meaning: &Meaning| matches!(meaning, Meaning::Signal(named) if named.kind == kind);
         meanings.iter().enumerate().any(|(at, meaning)| at != time && is_kind(meaning) && is_level(at))
@@ -192,7 +189,7 @@ fn others_than_levels(names: &[String], time: usize, is_level: &dyn Fn(usize) ->
     if !has(Kind::Step) || !has(Kind::Dir) {
         return None;
     }
-    let mut others = 0;
+    let mut skipped = 0;
     for (at, (name, meaning)) in names.iter().zip(&meanings).enumerate().take(64) {
         let is_signal = matches!(meaning, Meaning::Signal(_));
         let is_other = match (is_level(at), positions::is_position(name)) {
@@ -200,55 +197,55 @@ fn others_than_levels(names: &[String], time: usize, is_level: &dyn Fn(usize) ->
             (false, is_position) => is_position || !is_signal,
         };
         if at != time && is_other && TimeUnit::named(name).is_none() {
-            others |= 1 << at;
+            skipped |= 1 << at;
         }
     }
-    Some(others)
+    Some(skipped)
 }
 
 fn without_quotes(field: &[u8]) -> &[u8] {
     field.strip_prefix(b"\"").and_then(|field| field.strip_suffix(b"\"")).unwrap_or(field)
 }
 
-fn by_rows(lines: &[&[u8]]) -> Option<Found> {
+fn by_rows(lines: &[&[u8]]) -> Option<Detected> {
     if lines.iter().all(|line| is_sample(line)) {
-        return Some(Found::of(Format::SigrokCsv));
+        return Some(Detected::of(Format::SigrokCsv));
     }
     if is_trace(lines) {
-        return Some(Found::of(Format::Trace));
+        return Some(Detected::of(Format::Trace));
     }
     let texts: Vec<&[u8]> =
         lines.iter().filter(|line| !log_line::without_comment(line).is_empty()).copied().collect();
     let first = *texts.first()?;
     if dump::is_dump(&texts) {
-        return Some(Found::of(Format::HexDump));
+        return Some(Detected::of(Format::HexDump));
     }
     if annotations::is_annotation(first) {
-        return Some(Found::of(Format::Annotations));
+        return Some(Detected::of(Format::Annotations));
     }
     if hex::is_log(first) {
-        return Some(Found::of(Format::SerialLog));
+        return Some(Detected::of(Format::SerialLog));
     }
     if let Some(found) = by_numbers(&texts) {
         return found;
     }
     if hex::is_line(first) {
-        return Some(Found::of(Format::HexBytes));
+        return Some(Detected::of(Format::HexBytes));
     }
     // Labels of sigrok without comments: names, then samples.
     let (_, rows) = lines.split_first()?;
-    (!rows.is_empty() && rows.iter().all(|line| is_sample(line))).then_some(Found::of(Format::SigrokCsv))
+    (!rows.is_empty() && rows.iter().all(|line| is_sample(line))).then_some(Detected::of(Format::SigrokCsv))
 }
 
 /// Rows that begin with a rising number: levels, positions or bytes. `Some(None)` if ambiguous.
 #[allow(clippy::option_option, reason = "rows of numbers that may be either are of no other kind")]
-fn by_numbers(lines: &[&[u8]]) -> Option<Option<Found>> {
+fn by_numbers(lines: &[&[u8]]) -> Option<Option<Detected>> {
     let separator = separator(lines.first()?);
     let rows: Vec<Vec<&[u8]>> = lines.iter().map(|line| fields(line, separator).collect()).collect();
     let columns = rows.first().map_or(0, Vec::len);
     if let Some(table) = hex_table::by_rows(lines) {
         let may_be_positions = columns == 2 && rows.iter().all(|row| row.len() == 2);
-        let found = Found { table: Some(table), ..Found::of(Format::HexBytes) };
+        let found = Detected { table: Some(table), ..Detected::of(Format::HexBytes) };
         return Some((!may_be_positions || hex_table::is_hexadecimal(lines, table)).then_some(found));
     }
     let number = |field: &&[u8]| Decimal::parse(field);
@@ -259,7 +256,7 @@ fn by_numbers(lines: &[&[u8]]) -> Option<Option<Found>> {
     if columns < 2 || !rise || rows.iter().any(|row| row.len() != columns) {
         return None;
     }
-    let found = |format| Some(Some(Found { whole_times: places == 0, ..Found::of(format) }));
+    let found = |format| Some(Some(Detected { whole_times: places == 0, ..Detected::of(format) }));
     let rest = || rows.iter().flat_map(|row| row.iter().skip(1));
     if rows.len() > 1 && rest().all(|field| matches!(*field, b"0" | b"1")) {
         return found(Format::LevelsCsv);

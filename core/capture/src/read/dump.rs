@@ -10,7 +10,7 @@
 use super::{
     reading::Reader,
     recorder::{Recorder, grouped, quoted},
-    row::{self, Shape},
+    row::{self, RowFormat},
 };
 use crate::capture::{Capture, TimedByte};
 
@@ -21,15 +21,15 @@ const WIDTHS: [u64; 3] = [8, 16, 32];
 
 pub(super) struct HexDump {
     recorder: Recorder,
-    /// The next offset, for each base that fits so far.
-    next: [Option<u64>; 3],
-    before: String,
-    row: Vec<u8>,
+    /// The next offset in each base that fits so far.
+    next_offsets: [Option<u64>; 3],
+    previous_offset: String,
+    previous_row: Vec<u8>,
     width: u64,
     repeats: bool,
-    is_over: bool,
-    any: bool,
-    is_proven: bool,
+    has_ended: bool,
+    has_offset: bool,
+    is_order_known: bool,
     short_rows: u64,
 }
 
@@ -38,31 +38,31 @@ impl HexDump {
         recorder.channel("bytes");
         Self {
             recorder,
-            next: [Some(0); 3],
-            before: String::new(),
-            row: Vec::new(),
+            next_offsets: [Some(0); 3],
+            previous_offset: String::new(),
+            previous_row: Vec::new(),
             width: 0,
             repeats: false,
-            is_over: false,
-            any: false,
-            is_proven: false,
+            has_ended: false,
+            has_offset: false,
+            is_order_known: false,
             short_rows: 0,
         }
     }
 
-    fn begin(&mut self, offset: &Offset<'_>) -> Result<(), String> {
+    fn check_offset(&mut self, offset: &Offset<'_>) -> Result<(), String> {
         let values = BASES.map(|base| offset.value(base));
-        if !core::mem::replace(&mut self.any, true) {
-            self.next = values;
-            for (next, base) in self.next.iter_mut().zip(BASES) {
+        if !core::mem::replace(&mut self.has_offset, true) {
+            self.next_offsets = values;
+            for (next, base) in self.next_offsets.iter_mut().zip(BASES) {
                 *next = next.filter(|_| offset.may_be(base));
             }
             return Ok(());
         }
         let mut counts = Vec::new();
         let (repeats, width, before) =
-            (core::mem::take(&mut self.repeats), self.width, self.row.len() as u64);
-        for (next, value) in self.next.iter_mut().zip(values) {
+            (core::mem::take(&mut self.repeats), self.width, self.previous_row.len() as u64);
+        for (next, value) in self.next_offsets.iter_mut().zip(values) {
             let more = next.zip(value).and_then(|(next, value)| value.checked_sub(next));
             let is_right = |more: u64| {
                 if repeats { more > 0 && width > 0 && more.is_multiple_of(width) } else { more == 0 }
@@ -73,32 +73,22 @@ impl HexDump {
             }
         }
         if counts.is_empty() {
-            // A terminal starts a new row for each block of bytes.
-            let start = |base: usize| values.get(base).copied().flatten().filter(|_| offset.colon);
-            let begins = |width: &u64| {
-                let before = Offset::of(self.before.as_bytes()).and_then(|offset| offset.value(16));
-                !repeats
-                    && offset.digits.len() < 8
-                    && self.row.len() < *width as usize
-                    && before.is_some_and(|before| before.is_multiple_of(*width))
-                    && before.and_then(|before| before.checked_add(*width)) == start(0)
-            };
-            if WIDTHS.iter().any(begins) {
+            if !repeats && let Some(start) = self.offset_after_short_row(offset) {
                 self.short_rows += 1;
-                self.next = [start(0), None, None];
+                self.next_offsets = [Some(start), None, None];
                 return Ok(());
             }
             return Err(format!(
-                "the offset {} does not follow {} and its {before} bytes{}; rows are missing or damaged: dump again",
+                "the offset {} does not follow {} and its {before} bytes{}; dump again: rows are missing or damaged",
                 quoted(offset.digits),
-                quoted(self.before.as_bytes()),
+                quoted(self.previous_offset.as_bytes()),
                 if repeats { ", repeated" } else { "" },
             ));
         }
         let first = counts.first().copied().unwrap_or(0);
         if repeats && counts.iter().any(|count| *count != first) {
             return Err(format!(
-                "the offset {} after * may be hexadecimal, octal or decimal: dump without *, by od -v or hexdump -v",
+                "the offset {} after * may be hexadecimal, octal or decimal; dump without *: od -v or hexdump -v",
                 quoted(offset.digits)
             ));
         }
@@ -108,24 +98,44 @@ impl HexDump {
         Ok(())
     }
 
+    /// The offset of a row after a short one: a terminal starts a new row for each block of bytes.
+    fn offset_after_short_row(&self, offset: &Offset<'_>) -> Option<u64> {
+        let start = offset.value(16).filter(|_| offset.colon && offset.digits.len() < 8)?;
+        let previous = Offset::of(self.previous_offset.as_bytes())?.value(16)?;
+        let is_width = |width: &u64| {
+            self.previous_row.len() < *width as usize
+                && previous.is_multiple_of(*width)
+                && previous.checked_add(*width) == Some(start)
+        };
+        WIDTHS.iter().any(is_width).then_some(start)
+    }
+
     fn repeat(&mut self, count: u64) -> Result<(), String> {
         let (max_rows, there) = (self.recorder.max_rows(), self.recorder.capture.bytes.len());
-        let more = count.saturating_mul(self.row.len() as u64);
+        let more = count.saturating_mul(self.previous_row.len() as u64);
         if more > max_rows.saturating_sub(there) as u64 {
             return Err(format!(
-                "* stands for {} bytes; at most {} are read: dump a shorter part",
+                "* repeats {} bytes, more than the maximum of {}; dump a shorter part",
                 grouped(more),
                 grouped(max_rows as u64)
             ));
         }
         for _ in 0..count {
-            for at in 0..self.row.len() {
-                let byte = self.row.get(at).copied().unwrap_or(0);
+            for at in 0..self.previous_row.len() {
+                let byte = self.previous_row.get(at).copied().unwrap_or(0);
                 push(&mut self.recorder, byte)?;
             }
         }
         Ok(())
     }
+}
+
+fn has_words(line: &[u8]) -> String {
+    format!(
+        "{} contains words, whose byte order depends on the machine; dump single bytes: hexdump -C, xxd -g1, or od -A x \
+         -t x1",
+        quoted(line)
+    )
 }
 
 fn push(recorder: &mut Recorder, byte: u8) -> Result<(), String> {
@@ -198,57 +208,51 @@ impl Reader for HexDump {
         if line.is_empty() {
             return Ok(());
         }
-        if self.is_over {
+        if self.has_ended {
             return Err(format!(
-                "{} comes after the last offset of the dump; give one dump per file",
+                "{} follows the last offset of the dump; use one dump per file",
                 quoted(line)
             ));
         }
         if line == b"*" {
-            if self.row.is_empty() || core::mem::replace(&mut self.repeats, true) {
-                return Err("* repeats the row before it, and there is none".into());
+            if self.previous_row.is_empty() || core::mem::replace(&mut self.repeats, true) {
+                return Err("* must follow the row that it repeats; dump again".into());
             }
             return Ok(());
         }
         let offset = Offset::of(line).ok_or_else(|| {
-            format!("{} does not begin with an offset, as the rows before it do", quoted(line))
+            format!("{} does not begin with an offset like the rows before it; dump again", quoted(line))
         })?;
-        self.begin(&offset)?;
+        self.check_offset(&offset)?;
         if offset.rest.trim_ascii().is_empty() {
-            self.is_over = true;
+            self.has_ended = true;
             return Ok(());
         }
         let mut bytes = Vec::new();
-        let words = || {
-            format!(
-                "{} is written in words, whose byte order depends on the machine; dump single bytes: hexdump -C, xxd -g1, or \
-                 od -A x -t x1",
-                quoted(line)
-            )
-        };
-        let shape = row::parse(offset.rest, &mut bytes)
-            .map_err(|what| if !offset.colon && !self.any_row() { words() } else { what })?;
-        let Shape { group, is_proven, .. } = shape;
-        self.is_proven |= is_proven;
+        let shape = row::parse(offset.rest, &mut bytes).map_err(|message| {
+            if !offset.colon && self.previous_row.is_empty() { has_words(line) } else { message }
+        })?;
+        let RowFormat { group, is_order_known, .. } = shape;
+        self.is_order_known |= is_order_known;
         // xxd writes pairs in order; longer groups may be reversed (xxd -e).
-        if !offset.colon && group > 1 || group > 2 && !self.is_proven {
-            return Err(words());
+        if !offset.colon && group > 1 || group > 2 && !self.is_order_known {
+            return Err(has_words(line));
         }
         for &byte in &bytes {
             push(&mut self.recorder, byte)?;
         }
-        for next in &mut self.next {
+        for next in &mut self.next_offsets {
             *next = next.and_then(|next| next.checked_add(bytes.len() as u64));
         }
         self.width = self.width.max(bytes.len() as u64);
-        self.row = bytes;
-        self.before = String::from_utf8_lossy(offset.digits).into_owned();
+        self.previous_row = bytes;
+        self.previous_offset = String::from_utf8_lossy(offset.digits).into_owned();
         Ok(())
     }
 
     fn finish(mut self) -> (Capture, Result<(), String>) {
         if self.short_rows > 0 {
-            self.recorder.leave_out(match self.short_rows {
+            self.recorder.note(match self.short_rows {
                 1 => "1 row is shorter than its offset indicates; its bytes are used unchanged".into(),
                 count => format!(
                     "{} rows are shorter than their offsets indicate; their bytes are used unchanged",
@@ -259,16 +263,10 @@ impl Reader for HexDump {
         let missing = if self.repeats {
             Err("the dump ends with *, so the number of repeated rows is unknown; dump again with its last line".into())
         } else if self.recorder.capture.is_empty() {
-            Err("the file has no bytes".into())
+            Err("the file has no bytes; record again".into())
         } else {
             Ok(())
         };
         (self.recorder.finish(), missing)
-    }
-}
-
-impl HexDump {
-    const fn any_row(&self) -> bool {
-        !self.row.is_empty()
     }
 }

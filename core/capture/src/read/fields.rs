@@ -45,9 +45,11 @@ impl Fields {
                 self.count = count;
                 Ok(())
             }
-            ReadRecordResult::OutputEndsFull => Err(format!("more than {MAX_FIELDS} columns")),
+            ReadRecordResult::OutputEndsFull => {
+                Err(format!("more than {MAX_FIELDS} columns; export fewer channels"))
+            }
             ReadRecordResult::InputEmpty if !line.is_empty() => {
-                Err("a quotation mark is opened and not closed in this line".into())
+                Err("a quotation mark is not closed in this line; add the missing one".into())
             }
             _ => Ok(()),
         }
@@ -61,7 +63,11 @@ impl Fields {
             self.ends.push(self.text.len());
         }
         self.count = self.ends.len();
-        if self.count > MAX_FIELDS { Err(format!("more than {MAX_FIELDS} columns")) } else { Ok(()) }
+        if self.count > MAX_FIELDS {
+            Err(format!("more than {MAX_FIELDS} columns; export fewer channels"))
+        } else {
+            Ok(())
+        }
     }
 
     pub(super) const fn len(&self) -> usize {
@@ -101,11 +107,11 @@ pub(super) fn fields(line: &[u8], separator: u8) -> impl Iterator<Item = &[u8]> 
 pub(super) fn not_a_level(name: &str, field: &[u8]) -> String {
     let analog = Decimal::parse(field).is_some_and(|value| value.places > 0 || value.mantissa.abs() > 1);
     format!(
-        "{} is {}; a level is 0 or 1: {}",
+        "{} is {}, not 0 or 1; {}",
         if name.is_empty() { "a level" } else { name },
         quoted(field),
         if analog {
-            "export digital channels only, or write an analog one as 0 below the threshold of its input and 1 above it"
+            "export digital channels only, or convert analog channels to 0 and 1 by a threshold"
         } else {
             "export digital channels only"
         }

@@ -13,7 +13,7 @@
 use super::{
     base::Base,
     hex_table::{self, Table},
-    log_line::{BYTES, Length, Start, Time, direction, trailing_direction, without_comment, word},
+    log_line::{BYTES, ByteCount, LinePrefix, Time, direction, trailing_direction, without_comment, word},
     reading::Reader,
     recorder::{Recorder, quoted},
     row,
@@ -28,7 +28,7 @@ pub(super) struct HexText {
     base: Base,
     /// Whether the lines have times; unknown before the first.
     timed: Option<bool>,
-    any: bool,
+    has_first_line: bool,
     has_minutes: bool,
     /// Byte counts in brackets that do not match their lines.
     wrong_lengths: u64,
@@ -54,7 +54,7 @@ impl HexText {
             times: Times::new(table.map_or(TimeUnit::Seconds(0), |table| table.unit)),
             table,
             timed: None,
-            any: false,
+            has_first_line: false,
             bytes: Vec::new(),
             block: None,
         }
@@ -74,15 +74,15 @@ impl HexText {
         Ok(())
     }
 
-    fn parse(&mut self, text: &[u8], is_log: bool) -> Result<(), String> {
-        let Some(length) = Length::of(text) else { return self.digits(text, is_log) };
-        self.digits(length.rest, is_log)?;
-        if length.is_of(self.bytes.len()) {
+    fn push_counted_bytes(&mut self, text: &[u8], is_log: bool) -> Result<(), String> {
+        let Some(length) = ByteCount::parse(text) else { return self.push_bytes(text, is_log) };
+        self.push_bytes(length.rest, is_log)?;
+        if length.matches(self.bytes.len()) {
             return Ok(());
         }
         if !is_log || !length.is_decimal() || length.text.ends_with(b":") {
             return Err(format!(
-                "{} before {} may be a byte or a number of bytes; remove it, or write all bytes in one way",
+                "{} before {} may be a byte or a byte count; remove it, or write all bytes in one form",
                 quoted(length.text),
                 quoted(length.rest.trim_ascii())
             ));
@@ -91,37 +91,37 @@ impl HexText {
         Ok(())
     }
 
-    fn digits(&mut self, text: &[u8], is_log: bool) -> Result<(), String> {
+    fn push_bytes(&mut self, text: &[u8], is_log: bool) -> Result<(), String> {
         if self.base == Base::Hexadecimal {
             return parse_bytes(text, &mut self.bytes, is_log);
         }
         let words = without_comment(text).split(|byte| byte.is_ascii_whitespace() || b",;".contains(byte));
         for word in words.filter(|word| !word.is_empty()) {
             let byte = self.base.byte(word).ok_or_else(|| {
-                format!("{} is not a {} byte; give 0 to 255", quoted(word), self.base.name())
+                format!("{} is not a {} byte; use 0 to 255", quoted(word), self.base.name())
             })?;
             self.bytes.push(byte);
         }
         Ok(())
     }
 
-    fn plain(&mut self, line: &[u8]) -> Result<(), String> {
+    fn untimed_line(&mut self, line: &[u8]) -> Result<(), String> {
         self.bytes.clear();
         // Without times the two directions have no common order.
         if direction(word(line).0).is_some() || trailing_direction(line).is_some() {
             return Err(format!(
-                "{} has a direction and no time; give each line a time, or the bytes of one direction only",
+                "{} has a direction but no time; use a time on each line, or bytes of one direction only",
                 quoted(line)
             ));
         }
-        self.parse(line, false)?;
+        self.push_counted_bytes(line, false)?;
         if let Some(Block { tick, port }) = self.block.clone() {
             let channel = self.channel(&port)?;
             return self.push(Some(tick), channel);
         }
         if self.timed == Some(true) {
             return Err(format!(
-                "{} has no time, and the lines before have one; give each line a time, or none",
+                "{} has no time, but earlier lines have one; use a time on each line or on none",
                 quoted(line)
             ));
         }
@@ -137,18 +137,21 @@ impl Reader for HexText {
         if without_comment(line).is_empty() {
             return Ok(());
         }
-        if !core::mem::replace(&mut self.any, true) && self.table.is_some() && hex_table::is_head(line) {
+        if !core::mem::replace(&mut self.has_first_line, true)
+            && self.table.is_some()
+            && hex_table::is_head(line)
+        {
             return Ok(());
         }
-        let Some(start) = Start::of(line, self.table)? else { return self.plain(line) };
+        let Some(start) = LinePrefix::parse(line, self.table)? else { return self.untimed_line(line) };
         if self.timed == Some(false) {
             return Err(format!(
-                "{} has a time, and the lines before have none; give each line a time, or none",
+                "{} has a time, but earlier lines have none; use a time on each line or on none",
                 quoted(line)
             ));
         }
         self.timed = Some(true);
-        let Start { time, port, rest } = start;
+        let LinePrefix { time, port, rest } = start;
         let tick = match time {
             Time::Number(time) => self.times.tick_of(time, line, &mut self.recorder)?,
             Time::Ticks(text) => self.times.tick(text, &mut self.recorder)?,
@@ -166,7 +169,7 @@ impl Reader for HexText {
         self.block = None;
         let trailing = trailing_direction(rest).filter(|_| port == BYTES && self.table.is_none());
         let (port, rest) = trailing.map_or((port, rest), |(direction, rest)| (direction.to_owned(), rest));
-        self.parse(rest, matches!(time, Time::Clock(_)) || port != BYTES)?;
+        self.push_counted_bytes(rest, matches!(time, Time::Clock(_)) || port != BYTES)?;
         let channel = self.channel(&port)?;
         self.push(Some(tick), channel)
     }
@@ -175,34 +178,33 @@ impl Reader for HexText {
         self.times.finish(&mut self.recorder);
         let named = |name: &str| self.recorder.capture.channels.iter().any(|channel| channel.name == name);
         if named("RX") && named("TX") {
-            self.recorder.leave_out(
-                "RX and TX are named as in the log: in one of the host, TX is what the controller receives; \
-                 for such a log, exchange the channels of RX and TX",
+            self.recorder.note(
+                "RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
             );
         }
-        if self.table.is_some_and(|table| table.is_unclear) && self.recorder.base.is_none() {
-            self.recorder.leave_out(
-                "the bytes may be hexadecimal or decimal: they are read as hexadecimal; if they are decimal, name their \
-                 column dec (t_us,dec)",
+        if self.table.is_some_and(|table| table.is_ambiguous) && self.recorder.base.is_none() {
+            self.recorder.note(
+                "the bytes may be hexadecimal or decimal and are read as hexadecimal; if they are decimal, name the column dec (t_us,dec)",
             );
         }
         if self.has_minutes {
-            self.recorder.leave_out("times have no seconds: all bytes of a minute have one time");
+            self.recorder.note("times have no seconds, so all bytes of a minute have the same time");
         }
         if self.wrong_lengths > 0 {
-            self.recorder.leave_out(format!(
-                "{} of the numbers in brackets before the bytes of a line differ from their number; they are left out",
+            self.recorder.note(format!(
+                "{} numbers in brackets differ from the number of bytes in their lines and are skipped",
                 self.wrong_lengths
             ));
         }
         let capture = self.recorder.finish();
-        let missing = if capture.is_empty() { Err("the file has no bytes".into()) } else { Ok(()) };
+        let missing =
+            if capture.is_empty() { Err("the file has no bytes; record again".into()) } else { Ok(()) };
         (capture, missing)
     }
 }
 
 pub(super) fn is_log(line: &[u8]) -> bool {
-    let found = Start::of(line, None);
+    let found = LinePrefix::parse(line, None);
     found.is_ok_and(|start| {
         start.is_some_and(|start| matches!(start.time, Time::Clock(_)) || line.starts_with(b"["))
     })
@@ -210,7 +212,7 @@ pub(super) fn is_log(line: &[u8]) -> bool {
 
 pub(super) fn is_line(line: &[u8]) -> bool {
     let mut bytes = Vec::new();
-    match Start::of(line, None) {
+    match LinePrefix::parse(line, None) {
         Ok(Some(start)) => {
             let text = trailing_direction(start.rest).map_or(start.rest, |(_, text)| text);
             parse_bytes(text, &mut bytes, false).is_ok()

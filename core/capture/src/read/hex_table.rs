@@ -16,7 +16,7 @@ pub(super) struct Table {
     pub(super) direction: Direction,
     pub(super) base: Base,
     /// Whether the bytes fit another base, too.
-    pub(super) is_unclear: bool,
+    pub(super) is_ambiguous: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +75,7 @@ impl Head {
         let is_value = ["value", "val"].contains(&self.name.to_lowercase().as_str());
         let is_known = self.column != Column::Any || is_value;
         let is_other =
-            positions::is_position(&self.name) || Meaning::of(&self.name, false) != Meaning::Unknown;
+            positions::is_position(&self.name) || Meaning::from_name(&self.name, false) != Meaning::Unknown;
         is_known || !is_other && digits.are_pairs()
     }
 
@@ -83,16 +83,15 @@ impl Head {
         match (self.column, digits.guess()) {
             (Column::Hexadecimal, _) => Ok((Base::Hexadecimal, false)),
             (Column::Any, _) if digits.are_single_bits() => Err(format!(
-                "the values of the column “{}” may be levels or bytes; name it STEP, or another signal, or hex",
+                "the values of the column “{}” may be levels or bytes; name the column hex, or after a signal such as STEP",
                 self.name
             )),
-            (Column::Decimal, _) | (_, Guess::Sure(Base::Decimal)) => Ok((Base::Decimal, false)),
-            (_, Guess::Sure(Base::Hexadecimal)) => Ok((Base::Hexadecimal, false)),
-            (Column::Bytes, Guess::Unclear(Base::Hexadecimal, _)) => Ok((Base::Hexadecimal, true)),
+            (Column::Decimal, _) | (_, Guess::Certain(Base::Decimal)) => Ok((Base::Decimal, false)),
+            (_, Guess::Certain(Base::Hexadecimal)) => Ok((Base::Hexadecimal, false)),
+            (Column::Bytes, Guess::Ambiguous(Base::Hexadecimal, _)) => Ok((Base::Hexadecimal, true)),
             (Column::Bytes, _) => Ok((Base::Hexadecimal, false)),
             (Column::Any, _) => Err(format!(
-                "the values of the column “{}” may be decimal or hexadecimal bytes, or none; name it hex or dec, such as \
-                 time_us,hex, or position if they are positions",
+                "the values of the column “{}” may be hexadecimal bytes, decimal bytes or positions; name the column hex, dec or position, such as time_us,hex",
                 self.name
             )),
         }
@@ -107,7 +106,7 @@ pub(super) fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result
         unit: head.unit,
         direction: head.direction,
         base: Base::Hexadecimal,
-        is_unclear: false,
+        is_ambiguous: false,
     };
     let mut digits = Digits::new();
     for row in rows {
@@ -117,7 +116,7 @@ pub(super) fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result
     if !head.may_be_bytes(&digits) {
         return Ok(None);
     }
-    (table.base, table.is_unclear) = match base {
+    (table.base, table.is_ambiguous) = match base {
         Some(base) => (base, false),
         None => head.base(&digits)?,
     };
@@ -187,17 +186,17 @@ pub(super) fn by_rows(lines: &[&[u8]]) -> Option<Table> {
         words(rest).for_each(|word| digits.take(word));
     }
     let unit = if is_whole { TimeUnit::Cycles } else { TimeUnit::Seconds(0) };
-    let is_unclear = digits.guess() != Guess::Sure(Base::Hexadecimal);
+    let is_ambiguous = digits.guess() != Guess::Certain(Base::Hexadecimal);
     ((is_number || are_pairs) && lines.len() > 1).then_some(Table {
         separator,
         unit,
         direction: Direction::None,
         base: Base::Hexadecimal,
-        is_unclear,
+        is_ambiguous,
     })
 }
 
 /// Evidence for hexadecimal: a letter, `0x`, a leading zero, or several bytes in a row.
 pub(super) fn is_hexadecimal(lines: &[&[u8]], table: Table) -> bool {
-    !table.is_unclear || lines.iter().any(|line| cut(line, table.separator).1.len() > 2)
+    !table.is_ambiguous || lines.iter().any(|line| cut(line, table.separator).1.len() > 2)
 }

@@ -17,21 +17,21 @@ use super::{
 use crate::{capture::Capture, timebase::Timebase};
 
 const MAX_STEPPERS: usize = 16;
-/// 2 µs at 16 MHz; the commands do not give the width.
-const PULSE: u64 = 32;
+/// Maximum width of a pulse in ticks: 2 µs at 16 MHz. The commands do not give the width.
+const MAX_PULSE: u64 = 32;
 
 pub(super) struct StepCommands {
     recorder: Recorder,
     steppers: Vec<Stepper>,
-    beyond: Names,
-    beyond_oids: Vec<u64>,
+    omitted: Names,
+    omitted_oids: Vec<u64>,
     steps: u64,
     /// The latest clock of any stepper in 64 bits, to extend 32-bit clocks.
     clock: Option<i128>,
-    is_reset: bool,
+    has_reset: bool,
     /// The clock frequency is known if the file gives exactly one.
     frequency: Option<u64>,
-    is_unclear: bool,
+    has_several_frequencies: bool,
 }
 
 struct Stepper {
@@ -72,13 +72,13 @@ impl StepCommands {
         Self {
             recorder,
             steppers: Vec::new(),
-            beyond: Names::new(),
-            beyond_oids: Vec::new(),
+            omitted: Names::new(),
+            omitted_oids: Vec::new(),
             steps: 0,
             clock: None,
-            is_reset: false,
+            has_reset: false,
             frequency: None,
-            is_unclear: false,
+            has_several_frequencies: false,
         }
     }
 
@@ -86,9 +86,9 @@ impl StepCommands {
         let at = self.steppers.partition_point(|stepper| stepper.oid < oid);
         if self.steppers.get(at).is_none_or(|stepper| stepper.oid != oid) {
             if self.steppers.len() >= MAX_STEPPERS {
-                if self.beyond_oids.len() < MAX_STEPPERS && !self.beyond_oids.contains(&oid) {
-                    self.beyond_oids.push(oid);
-                    self.beyond.add(&format!("oid={oid}"));
+                if self.omitted_oids.len() < MAX_STEPPERS && !self.omitted_oids.contains(&oid) {
+                    self.omitted_oids.push(oid);
+                    self.omitted.add(&format!("oid={oid}"));
                 }
                 return None;
             }
@@ -99,12 +99,13 @@ impl StepCommands {
 
     fn command(&mut self, name: &[u8], values: &Values) -> Result<(), String> {
         let oid = values.get(b"oid", name)?;
-        let oid = u64::try_from(oid).map_err(|_| format!("oid={oid} is not a stepper's number"))?;
+        let oid = u64::try_from(oid)
+            .map_err(|_| format!("oid: {oid} is out of range; use the number of a stepper, from 0"))?;
         match name {
             b"set_next_step_dir" => {
                 let dir = values.get(b"dir", name)?;
                 if !matches!(dir, 0 | 1) {
-                    return Err(format!("dir={dir} is not a direction; it is 0 or 1"));
+                    return Err(format!("dir: {dir} is out of range; use 0 or 1"));
                 }
                 if let Some(stepper) = self.stepper(oid) {
                     stepper.dir = dir == 1;
@@ -113,63 +114,56 @@ impl StepCommands {
             b"reset_step_clock" => {
                 let low = values.get(b"clock", name)?;
                 let low = u32::try_from(low)
-                    .map_err(|_| format!("clock={low} is not a clock; it has 32 bits: 0 to {}", u32::MAX))?;
+                    .map_err(|_| format!("clock: {low} is out of range; use 0 to {}", u32::MAX))?;
                 // The 64-bit clock nearest to the latest one.
                 let clock = match self.clock {
                     Some(before) => before + i128::from(low.wrapping_sub(before as u32) as i32),
                     None => i128::from(low),
                 };
-                if !self.is_reset && self.steps > 0 {
-                    return Err("reset_step_clock comes after steps without one, so their distance is unknown; start \
-                                the log earlier, or delete the lines before it"
+                if !self.has_reset && self.steps > 0 {
+                    return Err("reset_step_clock follows steps without a clock, so their times are unknown; start the log earlier or delete the lines before this one"
                         .into());
                 }
-                self.is_reset = true;
+                self.has_reset = true;
                 self.clock = Some(clock);
                 if let Some(stepper) = self.stepper(oid) {
                     if stepper.clock.is_some_and(|before| clock < before) && !stepper.moves.is_empty() {
                         return Err(format!(
-                            "the clock of oid={oid} is set back to {low}, before its last step; give one run per file"
+                            "the clock of oid={oid} goes back to {low}, before its last step; use one run per file"
                         ));
                     }
                     stepper.clock = Some(clock);
                 }
             }
-            _ => self.queue(oid, name, values)?,
+            _ => self.queue_step(oid, name, values)?,
         }
         Ok(())
     }
 
-    fn queue(&mut self, oid: u64, name: &[u8], values: &Values) -> Result<(), String> {
+    fn queue_step(&mut self, oid: u64, name: &[u8], values: &Values) -> Result<(), String> {
         let (interval, count, add) =
             (values.get(b"interval", name)?, values.get(b"count", name)?, values.get(b"add", name)?);
-        let (Ok(interval), Ok(count), Ok(add)) = (interval.try_into(), count.try_into(), add.try_into())
+        let text = || format!("interval={interval} count={count} add={add}");
+        let (Ok(interval), Ok(count), Ok(add)) = (interval.try_into(), count.try_into(), i16::try_from(add))
         else {
             return Err(format!(
-                "interval={interval} count={count} add={add} does not fit: an interval has 32 bits, a count is 0 to 65535, \
-                 add has 16 bits and a sign"
+                "{} is out of range; use an interval of 32 bits, a count of 16 bits and an add of 16 bits with sign",
+                text()
             ));
         };
-        let add: i16 = add;
-        let max_rows = self.recorder.max_rows() as u64 / 2;
-        self.steps = self.steps.saturating_add(u64::from(count));
-        if self.steps > max_rows {
-            return Err(format!(
-                "more than {} steps, which are {} changes; give a shorter part of the log",
-                grouped(max_rows),
-                grouped(self.recorder.max_rows() as u64)
-            ));
-        }
-        let is_reset = self.is_reset;
+        self.count_steps(count)?;
+        let has_reset = self.has_reset;
         let Some(stepper) = self.stepper(oid) else { return Ok(()) };
-        if stepper.clock.is_none() && is_reset {
+        if stepper.clock.is_none() && has_reset {
             return Err(format!(
-                "oid={oid} has no reset_step_clock, and others have one: when its steps come is not known; start the log earlier"
+                "oid={oid} has no reset_step_clock, unlike other steppers, so the times of its steps are unknown; start the \
+                 log earlier"
             ));
         }
-        let from = stepper.clock.unwrap_or(0);
-        let Ok(start) = i64::try_from(from) else { return Err("the clock does not fit 63 bits".into()) };
-        let step = Move { from: start, interval, add: add.into(), count, dir: stepper.dir };
+        let Ok(from) = i64::try_from(stepper.clock.unwrap_or(0)) else {
+            return Err("the clock exceeds 63 bits; use a shorter part of the log".into());
+        };
+        let step = Move { from, interval, add: add.into(), count, dir: stepper.dir };
         if count == 0 {
             return Ok(());
         }
@@ -178,7 +172,8 @@ impl StepCommands {
         let shortest = last.min(interval.into());
         if shortest < 2 {
             return Err(format!(
-                "interval={interval} count={count} add={add} has an interval of {shortest} ticks; steps are at least 2 ticks apart"
+                "{} has a step interval of {shortest} ticks, below the minimum of 2; record the log again",
+                text()
             ));
         }
         if stepper.moves.len() == stepper.moves.capacity() {
@@ -186,7 +181,7 @@ impl StepCommands {
             stepper
                 .moves
                 .try_reserve_exact(more)
-                .map_err(|_| "no memory for more step commands; give a shorter log")?;
+                .map_err(|_| "not enough memory for more step commands; use a shorter log")?;
         }
         let end = step.step(count.into());
         stepper.moves.push(step);
@@ -195,6 +190,20 @@ impl StepCommands {
         Ok(())
     }
 
+    fn count_steps(&mut self, count: u16) -> Result<(), String> {
+        let max_rows = self.recorder.max_rows() as u64;
+        self.steps = self.steps.saturating_add(u64::from(count));
+        if self.steps <= max_rows / 2 {
+            return Ok(());
+        }
+        Err(format!(
+            "more than {} steps ({} changes); use a shorter part of the log",
+            grouped(max_rows / 2),
+            grouped(max_rows)
+        ))
+    }
+
+    /// Merges the edges of all steppers in order of time.
     fn levels(&mut self) -> Result<(), String> {
         let mut queues = Vec::new();
         for (motor, stepper) in self.steppers.iter().enumerate() {
@@ -222,7 +231,8 @@ impl StepCommands {
                     queue.advance();
                 }
             }
-            let tick = u64::try_from(tick - origin).map_err(|_| "a clock is before the first")?;
+            let tick = u64::try_from(tick - origin)
+                .map_err(|_| "a clock is before the first one; use one run per file")?;
             self.recorder.levels(tick, levels)?;
         }
     }
@@ -239,7 +249,7 @@ struct Queue<'m> {
     moves: core::slice::Iter<'m, Move>,
     current: Option<Move>,
     step: u64,
-    before: Option<i128>,
+    previous_step: Option<i128>,
     dir: bool,
     phase: Phase,
     next: Option<Edge>,
@@ -258,7 +268,7 @@ impl<'m> Queue<'m> {
         let current = moves.next().copied();
         let dir = current.is_some_and(|current| current.dir);
         let mut queue =
-            Self { bit, moves, current, step: 1, before: None, dir, phase: Phase::Dir, next: None };
+            Self { bit, moves, current, step: 1, previous_step: None, dir, phase: Phase::Dir, next: None };
         queue.advance();
         queue
     }
@@ -267,7 +277,7 @@ impl<'m> Queue<'m> {
         u64::from(self.dir) << (self.bit + 1)
     }
 
-    fn following(&self) -> Option<i128> {
+    fn next_step_tick(&self) -> Option<i128> {
         let current = self.current?;
         if self.step < u64::from(current.count) {
             return Some(current.step(self.step + 1));
@@ -281,13 +291,13 @@ impl<'m> Queue<'m> {
             let Some(current) = self.current else { return };
             let tick = current.step(self.step);
             let (step, dir) = (1_u64 << self.bit, 2_u64 << self.bit);
-            let since = self.before.map(|before| tick - before);
+            let since = self.previous_step.map(|before| tick - before);
             match self.phase {
                 Phase::Dir => {
                     self.phase = Phase::Rise;
                     if current.dir != self.dir {
                         self.dir = current.dir;
-                        let ahead = since.map_or(i128::from(PULSE), half);
+                        let ahead = since.map_or(i128::from(MAX_PULSE), half_interval);
                         let levels = if current.dir { dir } else { 0 };
                         self.next = Some(Edge { tick: tick - ahead, mask: dir, levels });
                         return;
@@ -299,8 +309,10 @@ impl<'m> Queue<'m> {
                     return;
                 }
                 Phase::Fall => {
-                    let wide = self.following().map_or(i128::from(PULSE), |next| half(next - tick));
-                    self.before = Some(tick);
+                    let wide = self
+                        .next_step_tick()
+                        .map_or(i128::from(MAX_PULSE), |next| half_interval(next - tick));
+                    self.previous_step = Some(tick);
                     self.phase = Phase::Dir;
                     if self.step < u64::from(current.count) {
                         self.step += 1;
@@ -316,8 +328,8 @@ impl<'m> Queue<'m> {
     }
 }
 
-fn half(ticks: i128) -> i128 {
-    (ticks / 2).clamp(1, i128::from(PULSE))
+fn half_interval(ticks: i128) -> i128 {
+    (ticks / 2).clamp(1, i128::from(MAX_PULSE))
 }
 
 struct Values {
@@ -328,7 +340,7 @@ impl Values {
     fn get(&self, key: &[u8], command: &[u8]) -> Result<i64, String> {
         self.list.iter().find(|(name, _)| name == key).map(|(_, value)| *value).ok_or_else(|| {
             format!(
-                "{} has no whole number {}=",
+                "{0} has no number {1}; use {0} with {1}= and a whole number",
                 String::from_utf8_lossy(command),
                 String::from_utf8_lossy(key)
             )
@@ -356,7 +368,7 @@ impl Reader for StepCommands {
         while let Some(word) = words.next() {
             if let Some((_, frequency)) = value(word).filter(|(key, _)| key == b"CLOCK_FREQ") {
                 let frequency = u64::try_from(frequency).ok().filter(|frequency| *frequency > 0);
-                self.is_unclear |= self.frequency.is_some() && self.frequency != frequency;
+                self.has_several_frequencies |= self.frequency.is_some() && self.frequency != frequency;
                 self.frequency = frequency.or(self.frequency);
             }
             if !matches!(word, b"queue_step" | b"set_next_step_dir" | b"reset_step_clock") {
@@ -373,7 +385,8 @@ impl Reader for StepCommands {
             if values.list.is_empty() && words.peek().is_none_or(|word| !word.contains(&b'=')) {
                 continue;
             }
-            self.command(word, &values).map_err(|what| format!("{}: {what}", quoted(line.trim_ascii())))?;
+            self.command(word, &values)
+                .map_err(|message| format!("{}: {message}", quoted(line.trim_ascii())))?;
         }
         Ok(())
     }
@@ -381,7 +394,9 @@ impl Reader for StepCommands {
     fn finish(mut self) -> (Capture, Result<(), String>) {
         let mut found = self.levels();
         if found.is_ok() && self.recorder.capture.is_empty() && self.steps == 0 {
-            found = Err("the log has no queue_step; log the step commands (klippy.log, parsedump.py)".into());
+            found = Err(
+                "the log has no queue_step; use a log of step commands (klippy.log, parsedump.py)".into()
+            );
         }
         let steppers: Vec<String> = self
             .steppers
@@ -390,24 +405,23 @@ impl Reader for StepCommands {
             .map(|(motor, stepper)| format!("oid={} is STEP{motor} and DIR{motor}", stepper.oid))
             .collect();
         if !steppers.is_empty() {
-            self.recorder.leave_out(format!("steppers: {}", steppers.join(", ")));
-            self.recorder.leave_out(format!(
-                "the commands have no pulse widths and no DIR set-up times: pulses of at most {PULSE} ticks are made, so \
-                 timing checks do not apply"
+            self.recorder.note(format!("steppers: {}", steppers.join(", ")));
+            self.recorder.note(format!(
+                "the commands have no pulse widths and no DIR set-up times: pulses are at most {MAX_PULSE} ticks wide, so timing checks do not apply"
             ));
         }
-        if !self.is_reset && self.steps > 0 {
-            self.recorder.leave_out(
+        if !self.has_reset && self.steps > 0 {
+            self.recorder.note(
                 "no reset_step_clock: each stepper begins at time 0, so times of different steppers cannot be compared",
             );
         }
-        if !self.beyond.is_empty() {
-            let sentence = format!("more than {MAX_STEPPERS} steppers: {} left out", self.beyond.to_text());
-            self.recorder.leave_out(sentence);
+        if !self.omitted.is_empty() {
+            let sentence = format!("more than {MAX_STEPPERS} steppers: {} left out", self.omitted.to_text());
+            self.recorder.note(sentence);
         }
-        if self.is_unclear {
+        if self.has_several_frequencies {
             self.recorder
-                .leave_out("several frequencies (CLOCK_FREQ): the log is of more than one controller");
+                .note("several frequencies (CLOCK_FREQ): the log has more than one controller, so the unit of time is unknown");
         } else {
             self.recorder.capture.timebase = self.frequency.and_then(|frequency| Timebase::new(1, frequency));
         }

@@ -21,21 +21,21 @@ pub(super) struct LevelsTable {
     recorder: Recorder,
     /// Without a unit, whole numbers are not seconds.
     whole_times: bool,
-    others: u64,
+    skipped_columns: u64,
     rate: SampleRate,
     /// The program writes decimal commas between fields that commas separate.
     decimal_commas: bool,
     line: u64,
     columns: Option<Columns>,
     unknown: u64,
-    quoted: Fields,
+    fields: Fields,
 }
 
 struct Columns {
     separator: u8,
     times: Times,
     list: Vec<Column>,
-    first_row: bool,
+    is_first_row: bool,
 }
 
 enum Column {
@@ -45,25 +45,25 @@ enum Column {
 }
 
 impl LevelsTable {
-    pub(super) fn new(recorder: Recorder, whole_times: bool, others: u64) -> Self {
+    pub(super) fn new(recorder: Recorder, whole_times: bool, skipped_columns: u64) -> Self {
         Self {
             recorder,
             whole_times,
-            others,
+            skipped_columns,
             rate: SampleRate::default(),
             decimal_commas: false,
             line: 0,
             columns: None,
             unknown: 0,
-            quoted: Fields::new(),
+            fields: Fields::new(),
         }
     }
 
     /// A first row of numbers is not a head; the first column is then the time.
-    fn begin(&mut self, line: &[u8]) -> Result<bool, String> {
+    fn read_header(&mut self, line: &[u8]) -> Result<bool, String> {
         let separator = separator(line);
-        self.quoted.split(line, separator)?;
-        let mut names = column_names(&self.quoted, separator);
+        self.fields.split(line, separator)?;
+        let mut names = column_names(&self.fields, separator);
         // A separator at the end of a row adds no column.
         if names.len() > 2 && names.last().is_some_and(String::is_empty) {
             names.pop();
@@ -81,16 +81,33 @@ impl LevelsTable {
             unit
         };
         if !has_head {
-            self.recorder.leave_out(
-                "the table does not name its columns: the first is taken as the time, each other as a channel",
+            self.recorder.note(
+                "the table has no column names: the first column is read as the time, all others as channels",
             );
         }
+        self.columns = Some(Columns {
+            separator,
+            times: Times::new(unit),
+            list: self.columns_of(&names, has_head, time, &others)?,
+            is_first_row: true,
+        });
+        Ok(has_head)
+    }
+
+    /// Assigns a bit to each column of levels, as far as there are bits.
+    fn columns_of(
+        &mut self,
+        names: &[String],
+        has_head: bool,
+        time: usize,
+        others: &[usize],
+    ) -> Result<Vec<Column>, String> {
         let (mut list, mut channels) = (Vec::new(), Vec::new());
         let mut bit = 0;
-        let mut left_out = Names::new();
+        let mut skipped = Names::new();
         for (at, name) in names.iter().enumerate() {
-            if at < 64 && self.others >> at & 1 == 1 {
-                left_out.add(name);
+            if at < 64 && self.skipped_columns >> at & 1 == 1 {
+                skipped.add(name);
                 list.push(Column::Other);
                 continue;
             }
@@ -104,11 +121,9 @@ impl LevelsTable {
             list.push(Column::Level(None, name));
             bit += 1;
         }
-        if !left_out.is_empty() {
-            self.recorder.leave_out(format!("columns that are no levels: {}", left_out.to_text()));
-        }
+        self.recorder.note_skipped("columns without levels", &skipped);
         if bit == 0 {
-            return Err("the head of the table names no channel; name the time and then each channel".into());
+            return Err("the table has no column of levels; use a header such as time_us,STEP,DIR".into());
         }
         let mut bits = select(channels.iter().map(String::as_str), &mut self.recorder).into_iter();
         for column in &mut list {
@@ -116,8 +131,7 @@ impl LevelsTable {
                 *bit = bits.next().flatten();
             }
         }
-        self.columns = Some(Columns { separator, times: Times::new(unit), list, first_row: true });
-        Ok(has_head)
+        Ok(list)
     }
 
     fn comment(&mut self, line: &[u8]) -> Result<(), String> {
@@ -127,7 +141,7 @@ impl LevelsTable {
         // The text as the file has it, for messages.
         let text = String::from_utf8_lossy(line);
         match keys.iter().find_map(|key| text.get(lower.find(key)? + key.len()..)) {
-            Some(rate) => self.rate.give(rate.trim(), self.line),
+            Some(rate) => self.rate.set(rate.trim(), self.line),
             None => Ok(()),
         }
     }
@@ -206,24 +220,23 @@ impl Reader for LevelsTable {
         if is_comment(line) {
             return self.comment(line);
         }
-        if self.columns.is_none() && self.begin(line)? {
+        if self.columns.is_none() && self.read_header(line)? {
             return Ok(());
         }
         let Some(columns) = &mut self.columns else { return Ok(()) };
-        if core::mem::take(&mut columns.first_row) && Self::units(columns, line) {
+        if core::mem::take(&mut columns.is_first_row) && Self::units(columns, line) {
             return Ok(());
         }
         let separator = columns.separator;
         let (time, levels) = if line.contains(&b'"') {
-            self.quoted.split(line, separator)?;
-            row(self.quoted.iter(), self.quoted.len(), columns, &mut self.unknown)?
+            self.fields.split(line, separator)?;
+            row(self.fields.iter(), self.fields.len(), columns, &mut self.unknown)?
         } else {
             let count = fields(line, separator).count();
             if let Some((time, rest)) = decimal_comma(line, columns, count) {
                 if !self.decimal_commas {
                     return Err(format!(
-                        "{} has one field more than the head of the table names, as with a decimal comma; export with \
-                         decimal points, or with semicolons between the fields",
+                        "{} has one field more than the header, probably because of a decimal comma; use decimal points, or semicolons between fields",
                         quoted(line)
                     ));
                 }
@@ -243,9 +256,9 @@ impl Reader for LevelsTable {
                 columns.times.finish(&mut self.recorder);
                 Ok(())
             }
-            None => Err("the table has no head".into()),
+            None => Err("the table has no header; use one such as time_us,STEP,DIR".into()),
         };
-        self.recorder.leave_out_unknown(self.unknown, "X: no data");
+        self.recorder.note_unknown_levels(self.unknown, "X: no data");
         let mut capture = self.recorder.finish();
         if capture.timebase.is_none() {
             capture.timebase = self.rate.get().and_then(period);
@@ -292,9 +305,12 @@ fn row<'l>(
         }
     }
     if count > columns.list.len() && all.any(|field| !field.is_empty()) {
-        return Err(format!("more fields than the header names, which are {}", columns.list.len()));
+        return Err(format!(
+            "{count} fields, but the header has {}; use the same number",
+            columns.list.len()
+        ));
     }
     Ok((time, levels))
 }
 
-const NO_ROWS: &str = "the table has a head and no rows; record again, or export the whole of the recording";
+const NO_ROWS: &str = "the table has no rows after its header; record again or export the complete recording";

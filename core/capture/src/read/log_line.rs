@@ -12,7 +12,7 @@ use super::{
 pub(super) const BYTES: &str = "bytes";
 const MAX_PORT: usize = 60;
 
-pub(super) struct Start<'l> {
+pub(super) struct LinePrefix<'l> {
     pub(super) time: Time<'l>,
     pub(super) port: String,
     pub(super) rest: &'l [u8],
@@ -25,8 +25,8 @@ pub(super) enum Time<'l> {
     Clock(Stamp),
 }
 
-impl<'l> Start<'l> {
-    pub(super) fn of(line: &'l [u8], table: Option<Table>) -> Result<Option<Self>, String> {
+impl<'l> LinePrefix<'l> {
+    pub(super) fn parse(line: &'l [u8], table: Option<Table>) -> Result<Option<Self>, String> {
         if let Some(table) = table {
             let (time, port, rest) = table.split(line);
             let port = direction(port).map_or_else(|| port_name(port), Into::into);
@@ -43,7 +43,7 @@ impl<'l> Start<'l> {
                 return Ok(None);
             }
             return match not_a_time(line) {
-                Some(what) => Err(what),
+                Some(message) => Err(message),
                 None => Ok(None),
             };
         };
@@ -60,29 +60,11 @@ pub(super) fn word(text: &[u8]) -> (&[u8], &[u8]) {
     (text.get(..end).unwrap_or_default(), text.get(end..).unwrap_or_default())
 }
 
+/// Splits a time off the beginning of a line.
 fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     let text = text.trim_ascii();
-    let open = text.first().copied().filter(|mark| b"[(<".contains(mark));
-    if let Some(open) = open {
-        let close = match open {
-            b'[' => b']',
-            b'(' => b')',
-            _ => b'>',
-        };
-        let end = text.iter().position(|byte| *byte == close)?;
-        let (inner, rest) = (text.get(1..end)?.trim_ascii(), text.get(end + 1..)?);
-        let has_more = !without_comment(rest).is_empty();
-        let stamp = Stamp::parse(inner).or_else(|| Stamp::without_seconds(inner).filter(|_| has_more));
-        if let Some(stamp) = stamp.filter(|stamp| stamp.length == inner.len()) {
-            return Some((Time::Clock(stamp), after_mark(rest)));
-        }
-        // grabserial also prints the time since the previous line.
-        let (number, unit) = with_unit(word(inner).0);
-        if !number.contains(&b'.') && unit.is_none() {
-            return None;
-        }
-        let time = seconds(number, unit.unwrap_or(TimeUnit::Seconds(0)))?;
-        return Some((Time::Number(time), after_mark(rest)));
+    if text.first().is_some_and(|mark| b"[(<".contains(mark)) {
+        return time_in_brackets(text);
     }
     if let Some(stamp) = Stamp::parse(text) {
         let rest = text.get(stamp.length..)?;
@@ -99,17 +81,42 @@ fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     {
         return Some((Time::Clock(stamp), after_mark(rest)));
     }
-    if let Some(colon) = text.iter().position(|byte| *byte == b':') {
-        let (before, rest) = text.split_at(colon);
-        let (number, unit) = with_unit(before.trim_ascii());
-        // Colons may also separate bytes.
-        let is_time =
-            unit.is_some() || number.contains(&b'.') || rest.get(1).is_none_or(u8::is_ascii_whitespace);
-        if let Some(time) = seconds(number, unit.unwrap_or(TimeUnit::Seconds(0))).filter(|_| is_time) {
-            return Some((Time::Number(time), rest.get(1..)?));
-        }
+    time_before_colon(text).or_else(|| time_without_colon(text))
+}
+
+fn time_in_brackets(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
+    let close = match text.first()? {
+        b'[' => b']',
+        b'(' => b')',
+        _ => b'>',
+    };
+    let end = text.iter().position(|byte| *byte == close)?;
+    let (inner, rest) = (text.get(1..end)?.trim_ascii(), text.get(end + 1..)?);
+    let has_more = !without_comment(rest).is_empty();
+    let stamp = Stamp::parse(inner).or_else(|| Stamp::without_seconds(inner).filter(|_| has_more));
+    if let Some(stamp) = stamp.filter(|stamp| stamp.length == inner.len()) {
+        return Some((Time::Clock(stamp), after_mark(rest)));
     }
-    // Without a colon, only a unit makes a number a time.
+    // grabserial also prints the time since the previous line.
+    let (number, unit) = with_unit(word(inner).0);
+    if !number.contains(&b'.') && unit.is_none() {
+        return None;
+    }
+    let time = seconds(number, unit.unwrap_or(TimeUnit::Seconds(0)))?;
+    Some((Time::Number(time), after_mark(rest)))
+}
+
+fn time_before_colon(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
+    let (before, rest) = text.split_at(text.iter().position(|byte| *byte == b':')?);
+    let (number, unit) = with_unit(before.trim_ascii());
+    // Colons may also separate bytes.
+    let is_time = unit.is_some() || number.contains(&b'.') || rest.get(1).is_none_or(u8::is_ascii_whitespace);
+    let time = seconds(number, unit.unwrap_or(TimeUnit::Seconds(0))).filter(|_| is_time)?;
+    Some((Time::Number(time), rest.get(1..)?))
+}
+
+/// A number with a unit, or a decimal number before a direction.
+fn time_without_colon(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     let (before, rest) = word(text);
     if let (number, Some(unit)) = with_unit(before)
         && let Some(time) = seconds(number, unit)
@@ -122,7 +129,6 @@ fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
     {
         return Some((Time::Number(time), after));
     }
-    // Or a decimal number before a direction.
     let time = seconds(before, TimeUnit::Seconds(0)).filter(|_| before.contains(&b'.'));
     time.filter(|_| direction(next).is_some()).map(|time| (Time::Number(time), rest))
 }
@@ -146,14 +152,14 @@ pub(super) fn trailing_direction(rest: &[u8]) -> Option<(&'static str, &[u8])> {
 }
 
 /// A byte count: `(04) 41 42 43 44`, `[4 bytes] 41 …`, `04: 41 …`.
-pub(super) struct Length<'l> {
+pub(super) struct ByteCount<'l> {
     pub(super) text: &'l [u8],
     pub(super) rest: &'l [u8],
     values: [Option<u64>; 2],
 }
 
-impl<'l> Length<'l> {
-    pub(super) fn of(rest: &'l [u8]) -> Option<Self> {
+impl<'l> ByteCount<'l> {
+    pub(super) fn parse(rest: &'l [u8]) -> Option<Self> {
         let rest = rest.trim_ascii_start();
         let close = match rest.first()? {
             b'(' => Some(b')'),
@@ -195,7 +201,7 @@ impl<'l> Length<'l> {
     }
 
     /// Accepts decimal or hexadecimal counts.
-    pub(super) fn is_of(&self, bytes: usize) -> bool {
+    pub(super) fn matches(&self, bytes: usize) -> bool {
         self.values.contains(&Some(bytes as u64))
     }
 }
@@ -224,7 +230,7 @@ fn not_a_time(line: &[u8]) -> Option<String> {
     let is_apart = line.get(colon + 1).is_none_or(u8::is_ascii_whitespace);
     (!is_byte || is_apart).then(|| {
         format!(
-            "{} is not a time; give a number, such as 0.00125 or 12.5us, or a time of day, such as 12:00:00.125",
+            "{} is not a time; use a number such as 0.00125 or 12.5us, or a time of day such as 12:00:00.125",
             quoted(before)
         )
     })
@@ -237,7 +243,7 @@ fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
         if first.is_empty() && after.is_empty() {
             break;
         }
-        let bare = bare(first);
+        let bare = without_marks(first);
         if bare.is_empty() && direction(first).is_none() {
             // A mark alone, or none.
             rest = after.get(usize::from(first.is_empty())..).unwrap_or_default();
@@ -266,7 +272,7 @@ fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
     Ok((name.unwrap_or_else(|| BYTES.to_owned()), rest))
 }
 
-fn bare(word: &[u8]) -> &[u8] {
+fn without_marks(word: &[u8]) -> &[u8] {
     let is_mark = |byte: &u8| b":-[]()|".contains(byte);
     let start = word.iter().position(|byte| !is_mark(byte)).unwrap_or(word.len());
     let end = word.iter().rposition(|byte| !is_mark(byte)).map_or(start, |last| last + 1);
@@ -281,7 +287,7 @@ pub(super) fn direction(word: &[u8]) -> Option<&'static str> {
     if let b">" | b">>" | b">>>" | b"->" | b"-->" | b"--->" | b"=>" | b"==>" | b">:" = &lower[..] {
         return Some("TX");
     }
-    match bare(&lower) {
+    match without_marks(&lower) {
         b"rx" | b"rxd" | b"recv" | b"received" | b"receive" | b"read" | b"in" | b"input" | b"irp_mj_read" => {
             Some("RX")
         }
@@ -302,7 +308,7 @@ fn is_port(word: &[u8]) -> bool {
 }
 
 fn port_name(name: &[u8]) -> String {
-    let name = String::from_utf8_lossy(bare(name)).into_owned();
+    let name = String::from_utf8_lossy(without_marks(name)).into_owned();
     if name.is_empty() { BYTES.to_owned() } else { name }
 }
 

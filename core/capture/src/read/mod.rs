@@ -1,7 +1,7 @@
-//! Detects the kind of a file and reads it.
+//! Detects the format of a file and reads it.
 //!
 //! ```text
-//! file -> Source: lines or words of a bounded buffer -> the kind's own reader -> Recorder -> Capture
+//! file -> Source: lines or words of a bounded buffer -> reader of the format -> Recorder -> Capture
 //! ```
 //!
 //! A file is read once, front to back (a sigrok session by its directory at the end). Needs memory for the changes
@@ -45,16 +45,16 @@ mod stepscope;
 mod vcd;
 
 use crate::capture::{Capture, Format};
-use detect::Found;
+use detect::Detected;
 use reading::Reader;
 use recorder::Recorder;
 use source::Source;
 use std::io::{BufRead, Seek};
 
 pub use base::Base;
-pub use reading::{Limits, ReadError, Reading, Wanted};
+pub use reading::{Limits, ReadError, ReadOptions, Reading};
 
-/// Reads a file of any kind. `watch` receives the number of bytes read at intervals and cancels by returning `false`.
+/// Reads a file of any [`Format`]. `watch` receives the number of bytes read at intervals and cancels by returning `false`.
 ///
 /// ```
 /// use stepscope_capture::{capture::Format, read::{Limits, read}};
@@ -62,39 +62,40 @@ pub use reading::{Limits, ReadError, Reading, Wanted};
 /// let table = "Time [s],STEP\n-0.5,0\n0.000001,1\n0.000003,\n";
 /// let reading = read(std::io::Cursor::new(table), &Limits::default(), &mut |_| true);
 /// assert_eq!((reading.capture.format, reading.capture.changes.len()), (Format::SaleaeCsv, 2));
-/// assert!(reading.error.expect("a level is missing").to_string().starts_with("line 4: STEP is “”; "));
+/// assert!(reading.error.expect("a level is missing").to_string().starts_with("line 4: STEP is “”, not 0 or 1; "));
 /// ```
 pub fn read<R: BufRead + Seek>(input: R, limits: &Limits, watch: &mut dyn FnMut(u64) -> bool) -> Reading {
-    read_wanted(input, limits, &Wanted::default(), watch)
+    read_with_options(input, limits, &ReadOptions::default(), watch)
 }
 
-/// Reads a file like [`read`]; `wanted` selects among more than [`MAX_CHANNELS`](crate::capture::MAX_CHANNELS)
+/// Reads a file like [`read`]; `options` selects among more than [`MAX_CHANNELS`](crate::capture::MAX_CHANNELS)
 /// channels and sets the base of bytes.
 ///
 /// ```
-/// use stepscope_capture::read::{Limits, Wanted, read_wanted};
+/// use stepscope_capture::read::{Limits, ReadOptions, read_with_options};
 ///
 /// let dump = "$var wire 100 ! bus [99:0] $end $enddefinitions $end #0 b0 ! #1 b1 !";
-/// let wanted = Wanted { channels: vec!["bus[99]".to_owned()], ..Wanted::default() };
-/// let capture = read_wanted(std::io::Cursor::new(dump), &Limits::default(), &wanted, &mut |_| true).capture;
+/// let options = ReadOptions { channels: vec!["bus[99]".to_owned()], ..ReadOptions::default() };
+/// let capture = read_with_options(std::io::Cursor::new(dump), &Limits::default(), &options, &mut |_| true).capture;
 /// assert_eq!(capture.channels.last().map(|channel| channel.name.as_str()), Some("bus[99]"));
 /// ```
-pub fn read_wanted<R: BufRead + Seek>(
+pub fn read_with_options<R: BufRead + Seek>(
     input: R,
     limits: &Limits,
-    wanted: &Wanted,
+    options: &ReadOptions,
     watch: &mut dyn FnMut(u64) -> bool,
 ) -> Reading {
     let mut source = match Source::open(input, watch) {
         Ok(source) => source,
-        Err(what) => return refusal(ReadError::whole(what)),
+        Err(message) => return refusal(ReadError::of_file(message)),
     };
-    let Found { format, whole_times, table, others } = match detect::detect(source.head(), wanted.base) {
-        Ok(found) => found,
-        Err(what) => return refusal(ReadError::whole(what)),
-    };
+    let Detected { format, whole_times, table, skipped_columns } =
+        match detect::detect(source.head(), options.base) {
+            Ok(found) => found,
+            Err(message) => return refusal(ReadError::of_file(message)),
+        };
     let mut recorder = Recorder::new(format, limits.max_rows);
-    (recorder.wanted, recorder.base) = (wanted.channels.clone(), wanted.base);
+    (recorder.requested, recorder.base) = (options.channels.clone(), options.base);
     match format {
         Format::Vcd => {
             let mut reader = vcd::Vcd::new(recorder);
@@ -104,7 +105,7 @@ pub fn read_wanted<R: BufRead + Seek>(
         Format::SigrokSession => session::read(source, recorder),
         Format::SigrokCsv => by_line(source, sigrok::Samples::new(recorder)),
         Format::LevelsCsv | Format::SaleaeCsv | Format::EdgesCsv => {
-            by_line(source, levels::LevelsTable::new(recorder, whole_times, others))
+            by_line(source, levels::LevelsTable::new(recorder, whole_times, skipped_columns))
         }
         Format::SaleaeBytes => by_line(source, saleae::DecodedBytes::new(recorder)),
         Format::Trace => by_line(source, stepscope::TraceText::new(recorder)),
@@ -113,7 +114,7 @@ pub fn read_wanted<R: BufRead + Seek>(
         Format::Klipper => by_line(source, klipper::StepCommands::new(recorder)),
         Format::HexDump => by_line(source, dump::HexDump::new(recorder)),
         Format::PositionsCsv => by_line(source, positions::Positions::new(recorder, whole_times)),
-        Format::Unknown => refusal(ReadError::whole(detect::UNKNOWN.into())),
+        Format::Unknown => refusal(ReadError::of_file(detect::UNKNOWN.into())),
     }
 }
 
@@ -125,7 +126,7 @@ fn by_line<R: BufRead>(mut source: Source<'_, R>, mut reader: impl Reader) -> Re
 /// Reports a missing end only if there was no earlier error.
 fn ended(reader: impl Reader, error: Option<ReadError>, line: u64) -> Reading {
     let (capture, missing) = reader.finish();
-    let error = error.or_else(|| missing.err().map(|what| ReadError { line, what }));
+    let error = error.or_else(|| missing.err().map(|message| ReadError { line, message }));
     Reading { capture, error }
 }
 
@@ -144,6 +145,6 @@ mod tests {
         let reading = read(std::io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
         assert_eq!((reading.capture.bytes.len(), reading.error.map(|error| error.line)), (2, Some(2)));
         let cancelled = read(std::io::Cursor::new("55 AA\n"), &Limits { max_rows: 1000 }, &mut |_| false);
-        assert_eq!(cancelled.error.map(|error| error.what).as_deref(), Some(ReadError::CANCELLED));
+        assert_eq!(cancelled.error.map(|error| error.message).as_deref(), Some(ReadError::CANCELLED));
     }
 }

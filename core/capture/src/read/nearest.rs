@@ -1,4 +1,4 @@
-//! Names the nearest kinds for an unknown file, with what each is missing.
+//! Names the nearest formats of an unknown file, and what each one needs.
 
 use super::{
     clock::Stamp,
@@ -10,40 +10,35 @@ use super::{
     row,
 };
 
-const NAMED: usize = 3;
+const MAX_NAMED: usize = 3;
 
 pub(super) fn nearest(lines: &[&[u8]]) -> String {
-    let kinds: [(usize, String); 7] = [
+    let formats: [(usize, String); 7] = [
         (share(lines, is_levels), levels(lines)),
         (
             share(lines, is_numbers),
-            "a table of times and positions, if its columns are named, such as time_us,position".into(),
+            "a table of positions (needs column names such as time_us,position)".into(),
         ),
-        (share(lines, is_bytes), format!("bytes in hexadecimal, if each has two digits: {}", not_bytes(lines))),
-        (
-            share(lines, is_timed),
-            format!("a serial log, if there are only hexadecimal bytes after the times: {}", not_bytes(lines)),
-        ),
-        (
-            share(lines, is_timed_byte),
-            "times and bytes, if the columns are named, such as t_us,bytes".into(),
-        ),
+        (share(lines, is_bytes), format!("bytes in hexadecimal ({})", not_bytes(lines))),
+        (share(lines, is_timed), format!("a serial log with hexadecimal bytes ({})", not_bytes(lines))),
+        (share(lines, is_timed_byte), "a table of bytes (needs column names such as t_us,bytes)".into()),
         (
             share(lines, |line| line.starts_with(b"#") || line.contains(&b'$')),
-            "a value change dump, if it begins with its definitions ($timescale, $var, $enddefinitions)".into(),
+            "a value change dump (needs $var and $enddefinitions at its beginning)".into(),
         ),
         (
             share(lines, |line| line.iter().filter(|byte| **byte == b'=').count() > 1),
-            "step commands of Klipper, if there are lines such as queue_step oid=0 interval=1000 count=4 add=0".into(),
+            "step commands of Klipper (needs lines such as queue_step oid=0 interval=1000 count=4 add=0)"
+                .into(),
         ),
     ];
-    let mut kinds: Vec<(usize, String)> = kinds.into();
-    kinds.sort_by_key(|(share, _)| core::cmp::Reverse(*share));
-    let named: Vec<String> = kinds.into_iter().take(NAMED).map(|(_, kind)| kind).collect();
-    format!("it may be {}", named.join("; or "))
+    let mut formats: Vec<(usize, String)> = formats.into();
+    formats.sort_by_key(|(share, _)| core::cmp::Reverse(*share));
+    let named: Vec<String> = formats.into_iter().take(MAX_NAMED).map(|(_, format)| format).collect();
+    format!("the nearest are {}", named.join("; "))
 }
 
-/// In percent.
+/// Share of the lines for which `is` returns true, in percent.
 fn share(lines: &[&[u8]], is: impl Fn(&[u8]) -> bool) -> usize {
     100 * lines.iter().filter(|line| is(line)).count() / lines.len().max(1)
 }
@@ -86,11 +81,11 @@ fn levels(lines: &[&[u8]]) -> String {
         split(first).into_iter().map(|name| String::from_utf8_lossy(name).into()).collect();
     let has_time = Layout::of(&names).is_some();
     let missing = if has_time {
-        "each other column is 0 or 1"
+        "needs 0 or 1 in all other columns"
     } else {
-        "a column is named as its time: time_s, time_us, sample"
+        "needs a time column, such as time_us or sample"
     };
-    format!("a table of levels, if {missing}")
+    format!("a table of levels ({missing})")
 }
 
 fn not_bytes(lines: &[&[u8]]) -> String {
@@ -99,8 +94,5 @@ fn not_bytes(lines: &[&[u8]]) -> String {
         let mut bytes = Vec::new();
         !word.is_empty() && row::parse(word, &mut bytes).is_err()
     });
-    word.map_or_else(
-        || "some lines have other numbers".into(),
-        |word| format!("{} is not a byte", quoted(word)),
-    )
+    word.map_or_else(|| "needs two digits per byte".into(), |word| format!("{} is not a byte", quoted(word)))
 }

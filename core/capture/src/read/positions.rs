@@ -55,9 +55,7 @@ impl Positions {
             .enumerate()
             .filter(|(column, _)| *column != time && *column != at)
             .for_each(|(_, name)| others.add(name));
-        if !others.is_empty() {
-            self.recorder.leave_out(format!("columns besides time and position: {}", others.to_text()));
-        }
+        self.recorder.note_skipped("columns", &others);
         Ok(true)
     }
 }
@@ -82,10 +80,10 @@ impl Reader for Positions {
         let tick = self.times.tick(self.fields.get(time), &mut self.recorder)?;
         let field = self.fields.get(at);
         let position = Decimal::parse(field)
-            .ok_or_else(|| format!("{} is not a position; give a whole number of steps", quoted(field)))?;
+            .ok_or_else(|| format!("{} is not a position; use a whole number of steps", quoted(field)))?;
         let position = position.whole().and_then(|steps| i64::try_from(steps).ok()).ok_or_else(|| {
             format!(
-                "the position {} is not a whole number of steps; multiply it by the steps of a unit (of a mm, of a turn) and round it",
+                "the position {} is not a whole number of steps; multiply it by the steps per unit (mm, turn) and round it",
                 quoted(field)
             )
         })?;
@@ -95,7 +93,11 @@ impl Reader for Positions {
     fn finish(mut self) -> (Capture, Result<(), String>) {
         self.times.finish(&mut self.recorder);
         let capture = self.recorder.finish();
-        let missing = if capture.is_empty() { Err("the table has no positions".into()) } else { Ok(()) };
+        let missing = if capture.is_empty() {
+            Err("the table has no positions; record or export again".into())
+        } else {
+            Ok(())
+        };
         (capture, missing)
     }
 }
@@ -123,8 +125,8 @@ fn check_unit(name: &str) -> Result<(), String> {
         unit if bracketed.is_none() || unit.is_empty() || STEP_UNITS.contains(&unit) => return Ok(()),
         unit => {
             return Err(format!(
-                "the column “{name}” is in {unit}, which is not a unit of positions; give whole steps and name the column \
-                 position, or name its unit: {}, mm, cm, m, um, in, mil, deg, rad or turns",
+                "the column “{name}” has the unknown unit {unit}; use whole steps in a column named position, or a \
+                 unit of steps: {}",
                 STEP_UNITS.join(", ")
             ));
         }

@@ -20,7 +20,7 @@ impl Default for Limits {
 
 /// Choices that a file leaves open.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Wanted {
+pub struct ReadOptions {
     /// Channels to read first: full names or their last parts.
     pub channels: Vec<String>,
     /// Base of decoded bytes; `None` detects it.
@@ -33,15 +33,15 @@ pub struct ReadError {
     /// Line of the text, from 1; 0 if the file has no lines.
     pub line: u64,
     /// The problem and its fix.
-    pub what: String,
+    pub message: String,
 }
 
 impl ReadError {
-    /// The text of `what` after `watch` has canceled reading.
+    /// The text of `message` after `watch` has canceled reading.
     pub const CANCELLED: &str = "cancelled";
 
-    pub(super) const fn whole(what: String) -> Self {
-        Self { line: 0, what }
+    pub(super) const fn of_file(message: String) -> Self {
+        Self { line: 0, message }
     }
 }
 
@@ -50,7 +50,7 @@ impl fmt::Display for ReadError {
         if self.line > 0 {
             write!(f, "line {}: ", self.line)?;
         }
-        f.write_str(&self.what)
+        f.write_str(&self.message)
     }
 }
 
@@ -66,7 +66,7 @@ pub struct Reading {
 }
 
 pub(super) trait Reader {
-    /// Errors: what is wrong with this line or word.
+    /// Reads a line or word. Errors: the problem and its fix.
     fn take(&mut self, text: &[u8]) -> Result<(), String>;
 
     fn finish(self) -> (Capture, Result<(), String>);

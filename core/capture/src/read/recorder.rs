@@ -8,7 +8,7 @@ use crate::{
     names::{Kind, Meaning},
 };
 
-const MAX_LEFT_OUT: usize = 20;
+const MAX_NOTES: usize = 20;
 const MAX_NAME: usize = 400;
 const MAX_NAMED: usize = 6;
 
@@ -19,8 +19,8 @@ pub(super) struct Recorder {
     /// Bits that changed at the latest row's time, and the number of lost pulses per channel.
     changed: u64,
     lost: [u64; MAX_CHANNELS],
-    beyond: Names,
-    pub(super) wanted: Vec<String>,
+    omitted: Names,
+    pub(super) requested: Vec<String>,
     pub(super) base: Option<Base>,
 }
 
@@ -32,8 +32,8 @@ impl Recorder {
             latest: None,
             changed: 0,
             lost: [0; MAX_CHANNELS],
-            beyond: Names::new(),
-            wanted: Vec::new(),
+            omitted: Names::new(),
+            requested: Vec::new(),
             base: None,
         }
     }
@@ -46,7 +46,7 @@ impl Recorder {
     pub(super) fn channel(&mut self, name: &str) -> Option<u8> {
         let bit = self.capture.channels.len();
         if bit >= MAX_CHANNELS {
-            self.beyond(name);
+            self.omit(name);
             return None;
         }
         self.capture.channels.push(Channel { name: cut(name).into() });
@@ -58,12 +58,12 @@ impl Recorder {
         known.map_or_else(|| self.channel(name), |bit| u8::try_from(bit).ok())
     }
 
-    pub(super) fn beyond(&mut self, name: &str) {
-        self.beyond.add(name);
+    pub(super) fn omit(&mut self, name: &str) {
+        self.omitted.add(name);
     }
 
-    pub(super) const fn more_beyond(&mut self, count: u64) {
-        self.beyond.count = self.beyond.count.saturating_add(count);
+    pub(super) const fn omit_more(&mut self, count: u64) {
+        self.omitted.count = self.omitted.count.saturating_add(count);
     }
 
     /// `tick` is at least the previous row's.
@@ -79,10 +79,10 @@ impl Recorder {
             }
             _ => {
                 self.changed = self.latest.map_or(0, |before| before.levels ^ levels);
-                self.settle();
+                self.push_latest();
                 let changes = &mut self.capture.changes;
-                fits(changes.len(), self.max_rows, "changes")?;
-                changes.reserve().map_err(|_| no_memory(changes.len(), "changes"))?;
+                check_count(changes.len(), self.max_rows, "changes")?;
+                changes.reserve().map_err(|_| out_of_memory(changes.len(), "changes"))?;
                 self.latest = Some(Change { tick, levels });
                 Ok(())
             }
@@ -105,56 +105,50 @@ impl Recorder {
         self.changed = 0;
     }
 
-    /// Reports lost pulses of channels that may matter; simulators write many others.
-    fn leave_out_lost(&mut self) {
+    fn note_lost_pulses(&mut self) {
+        let mut sentences = Vec::new();
+        for (index, (channel, &lost)) in self.capture.channels.iter().zip(&self.lost).enumerate() {
+            if lost == 0 || !self.reports_lost_pulses(index, &channel.name) {
+                continue;
+            }
+            let pulses = if lost == 1 { "pulse starts and ends" } else { "pulses start and end" };
+            let verb = if lost == 1 { "is" } else { "are" };
+            sentences.push(format!(
+                "{} {pulses} at the same time and {verb} lost ({}); record with a finer unit of time",
+                grouped(lost),
+                channel.name
+            ));
+        }
+        sentences.into_iter().for_each(|sentence| self.note(sentence));
+    }
+
+    /// Whether a channel's lost pulses matter: with a map, those of its channels; otherwise those of channels that may have
+    /// pulses. In dumps only known names count, since simulators write many other signals.
+    fn reports_lost_pulses(&self, index: usize, name: &str) -> bool {
         let is_dump = self.capture.format == Format::Vcd;
-        let counts = |name: &str| match Meaning::of(name, false) {
+        let (is_level, may_have_pulses) = match Meaning::from_name(name, false) {
             Meaning::Signal(named) => match named.kind {
-                Kind::Step | Kind::Cw | Kind::Ccw | Kind::A | Kind::B | Kind::Rx | Kind::Tx => true,
-                Kind::Clock => !is_dump,
-                Kind::Dir | Kind::En | Kind::De => false,
+                Kind::Dir | Kind::En | Kind::De => (true, false),
+                Kind::Clock => (false, !is_dump),
+                Kind::Step | Kind::Cw | Kind::Ccw | Kind::A | Kind::B | Kind::Rx | Kind::Tx => (false, true),
             },
-            Meaning::Unknown => !is_dump,
-            Meaning::Other => false,
+            Meaning::Unknown => (false, !is_dump),
+            Meaning::Other => (false, false),
         };
-        // With a map, only its channels matter.
-        let is_wanted = |index: usize, name: &str| {
-            let last = name.rsplit('.').next().unwrap_or(name);
-            let number = format!("#{index}");
-            let is_named = |wanted: &String| {
-                *wanted == number || wanted.eq_ignore_ascii_case(name) || wanted.eq_ignore_ascii_case(last)
-            };
-            self.wanted.iter().any(is_named)
+        if self.requested.is_empty() {
+            return may_have_pulses;
+        }
+        let (last, number) = (name.rsplit('.').next().unwrap_or(name), format!("#{index}"));
+        let is_named = |requested: &String| {
+            *requested == number
+                || requested.eq_ignore_ascii_case(name)
+                || requested.eq_ignore_ascii_case(last)
         };
-        let is_level = |name: &str| {
-            matches!(Meaning::of(name, false),
-                Meaning::Signal(named) if matches!(named.kind, Kind::Dir | Kind::En | Kind::De))
-        };
-        let lost = self.capture.channels.iter().zip(&self.lost).enumerate();
-        let sentences: Vec<String> = lost
-            .filter(|(index, (channel, lost))| {
-                let name = &channel.name;
-                let is_of_interest = if self.wanted.is_empty() {
-                    counts(name)
-                } else {
-                    is_wanted(*index, name) && !is_level(name)
-                };
-                **lost > 0 && is_of_interest
-            })
-            .map(|(_, (channel, lost))| {
-                let pulses = if *lost == 1 { "pulse starts and ends" } else { "pulses start and end" };
-                format!(
-                    "{} {pulses} at one time of the file, lost ({}); record times more finely",
-                    grouped(*lost),
-                    channel.name
-                )
-            })
-            .collect();
-        sentences.into_iter().for_each(|sentence| self.leave_out(sentence));
+        !is_level && self.requested.iter().any(is_named)
     }
 
     /// Space for it was reserved before.
-    fn settle(&mut self) {
+    fn push_latest(&mut self) {
         if let Some(latest) = self.latest.take()
             && self.capture.changes.last().is_none_or(|before| before.levels != latest.levels)
         {
@@ -163,7 +157,7 @@ impl Recorder {
     }
 
     pub(super) fn byte(&mut self, byte: TimedByte) -> Result<(), String> {
-        room(&mut self.capture.bytes, self.max_rows, "bytes")?;
+        reserve(&mut self.capture.bytes, self.max_rows, "bytes")?;
         self.capture.end = byte.tick;
         self.capture.bytes.push(byte);
         Ok(())
@@ -177,7 +171,7 @@ impl Recorder {
     }
 
     pub(super) fn position(&mut self, position: TimedPosition) -> Result<(), String> {
-        room(&mut self.capture.positions, self.max_rows, "positions")?;
+        reserve(&mut self.capture.positions, self.max_rows, "positions")?;
         self.capture.end = position.tick;
         self.capture.positions.push(position);
         Ok(())
@@ -210,62 +204,67 @@ impl Recorder {
         self.retime(|tick| Some(map(tick)))
     }
 
-    pub(super) fn leave_out(&mut self, sentence: impl Into<String>) {
-        if self.capture.notes.len() < MAX_LEFT_OUT {
+    pub(super) fn note(&mut self, sentence: impl Into<String>) {
+        if self.capture.notes.len() < MAX_NOTES {
             self.capture.notes.push(sentence.into());
         }
     }
 
-    pub(super) fn leave_out_unknown(&mut self, count: u64, which: &str) {
+    /// Notes skipped items, if any.
+    pub(super) fn note_skipped(&mut self, noun: &str, names: &Names) {
+        if !names.is_empty() {
+            self.note(format!("skipped {noun}: {}", names.to_text()));
+        }
+    }
+
+    pub(super) fn note_unknown_levels(&mut self, count: u64, which: &str) {
         if count > 0 {
             let levels = if count == 1 { "level is" } else { "levels are" };
-            self.leave_out(format!(
-                "{} {levels} neither high nor low ({which}), taken as low",
-                grouped(count)
-            ));
+            self.note(format!("{} {levels} neither high nor low ({which}), read as low", grouped(count)));
         }
     }
 
     pub(super) fn finish(mut self) -> Capture {
-        self.settle();
-        self.leave_out_lost();
-        self.capture.omitted_channels = self.beyond.count;
-        if !self.beyond.is_empty() {
+        self.push_latest();
+        self.note_lost_pulses();
+        self.capture.omitted_channels = self.omitted.count;
+        if !self.omitted.is_empty() {
             let sentence = format!(
-                "{} of {} channels left out ({}): {MAX_CHANNELS} are read, first those that the channel map names, then those with a recognized name",
-                grouped(self.beyond.count),
-                grouped(self.beyond.count.saturating_add(self.capture.channels.len() as u64)),
-                self.beyond.to_text()
+                "{} of {} channels left out ({}): at most {MAX_CHANNELS} are read, first those in the channel map, then those with a recognized name",
+                grouped(self.omitted.count),
+                grouped(self.omitted.count.saturating_add(self.capture.channels.len() as u64)),
+                self.omitted.to_text()
             );
-            self.leave_out(sentence);
+            self.note(sentence);
         }
         self.capture
     }
 }
 
-fn room<T>(rows: &mut Vec<T>, max_rows: usize, what: &str) -> Result<(), String> {
-    fits(rows.len(), max_rows, what)?;
+fn reserve<T>(rows: &mut Vec<T>, max_rows: usize, noun: &str) -> Result<(), String> {
+    check_count(rows.len(), max_rows, noun)?;
     if rows.len() == rows.capacity() {
         // Growing by half: a doubled vector may not fit next to the old one.
         let more = (rows.len() / 2).max(1024);
         let count = rows.len();
-        rows.try_reserve_exact(more).map_err(|_| no_memory(count, what))?;
+        rows.try_reserve_exact(more).map_err(|_| out_of_memory(count, noun))?;
     }
     Ok(())
 }
 
-fn fits(count: usize, max_rows: usize, what: &str) -> Result<(), String> {
+fn check_count(count: usize, max_rows: usize, noun: &str) -> Result<(), String> {
     if count < max_rows {
         return Ok(());
     }
-    Err(format!("more than {} {what}; record a shorter time, or fewer channels", grouped(max_rows as u64)))
+    Err(format!("more than {} {noun}; record a shorter time, or fewer channels", grouped(max_rows as u64)))
 }
 
-fn no_memory(count: usize, what: &str) -> String {
-    format!("no memory for more than {} {what}; record a shorter time", grouped(count as u64))
+fn out_of_memory(count: usize, noun: &str) -> String {
+    format!("not enough memory for more than {} {noun}; record a shorter time", grouped(count as u64))
 }
 
 /// The first few omitted names, and the number of the others.
+#[derive(Default)]
 pub(super) struct Names {
     first: Vec<String>,
     count: u64,

@@ -12,38 +12,41 @@ use super::recorder::quoted;
 const MAX_TEXT_ROW: usize = 4096;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Shape {
+pub(super) struct RowFormat {
     pub(super) group: usize,
     /// Whether the text confirms the order of bytes within groups.
-    pub(super) is_proven: bool,
+    pub(super) is_order_known: bool,
     pub(super) has_text: bool,
 }
 
-pub(super) fn parse(row: &[u8], bytes: &mut Vec<u8>) -> Result<Shape, String> {
+pub(super) fn parse(row: &[u8], bytes: &mut Vec<u8>) -> Result<RowFormat, String> {
     let row = row.trim_ascii();
     let start = bytes.len();
-    for (end, text) in texts(row) {
+    for (end, text) in text_candidates(row) {
         bytes.truncate(start);
-        let Some(group) = row.get(..end).and_then(|head| tokens(head, bytes).ok()) else { continue };
+        let Some(group) = row.get(..end).and_then(|head| parse_groups(head, bytes).ok()) else { continue };
         let found = bytes.get(start..).unwrap_or_default();
-        if found.is_empty() || !text.fits(found) {
+        if found.is_empty() || !text.matches(found) {
             continue;
         }
-        let is_proven = text.proves(found, group);
-        return Ok(Shape { group, is_proven, has_text: true });
+        let is_order_known = text.confirms_order(found, group);
+        return Ok(RowFormat { group, is_order_known, has_text: true });
     }
     bytes.truncate(start);
     let has_gap = row.windows(2).any(|pair| pair == b"  ");
-    match tokens(row, bytes) {
+    match parse_groups(row, bytes) {
         // After pairs, the text begins at a wide gap.
         Ok(group) if group > 1 && has_gap => {
             bytes.truncate(start);
-            Err(format!("the text of {} does not fit its bytes; is their order changed?", quoted(row)))
+            Err(format!(
+                "the text of {} does not match its bytes; use a dump of single bytes in order (hexdump -C, xxd -g1)",
+                quoted(row)
+            ))
         }
-        Ok(group) => Ok(Shape { group, ..Shape::default() }),
-        Err(what) => {
+        Ok(group) => Ok(RowFormat { group, ..RowFormat::default() }),
+        Err(message) => {
             bytes.truncate(start);
-            Err(what)
+            Err(message)
         }
     }
 }
@@ -53,14 +56,14 @@ struct Text<'r> {
     is_marked: bool,
 }
 
-fn texts(row: &[u8]) -> impl Iterator<Item = (usize, Text<'_>)> {
-    let marked = |open: u8, close: u8, least: usize| {
+fn text_candidates(row: &[u8]) -> impl Iterator<Item = (usize, Text<'_>)> {
+    let marked = |open: u8, close: u8, min_gap: usize| {
         let body = row.strip_suffix(&[close])?;
-        let at = (least..body.len()).find(|at| {
+        let at = (min_gap..body.len()).find(|at| {
             body.get(*at) == Some(&open)
-                && body.get(at - least..*at).is_some_and(|gap| gap.iter().all(|byte| *byte == b' '))
+                && body.get(at - min_gap..*at).is_some_and(|gap| gap.iter().all(|byte| *byte == b' '))
         })?;
-        Some((at - least, Text { text: body.get(at + 1..)?, is_marked: true }))
+        Some((at - min_gap, Text { text: body.get(at + 1..)?, is_marked: true }))
     };
     let marked = [marked(b'|', b'|', 1), marked(b'>', b'<', 2)].into_iter().flatten();
     let is_blank = |at: usize| row.get(at).is_some_and(|byte| matches!(byte, b' ' | b'\t'));
@@ -90,12 +93,12 @@ impl Text<'_> {
         })
     }
 
-    fn fits(&self, bytes: &[u8]) -> bool {
+    fn matches(&self, bytes: &[u8]) -> bool {
         self.letters(bytes).is_some()
     }
 
     /// Whether the reversed bytes of a group would not fit.
-    fn proves(&self, bytes: &[u8], group: usize) -> bool {
+    fn confirms_order(&self, bytes: &[u8], group: usize) -> bool {
         let Some(letters) = self.letters(bytes).filter(|_| group > 1) else { return false };
         bytes.chunks(group).zip(letters.chunks(group)).any(|(bytes, letters)| {
             bytes.len() == letters.len()
@@ -114,7 +117,7 @@ fn is_letter(letter: char, byte: u8) -> bool {
 }
 
 /// Reads `55 AA`, `0x55,0xAA`, `44-45`, `55aa 0102`; returns the number of bytes per group.
-fn tokens(text: &[u8], bytes: &mut Vec<u8>) -> Result<usize, String> {
+fn parse_groups(text: &[u8], bytes: &mut Vec<u8>) -> Result<usize, String> {
     let words = text.split(|byte| byte.is_ascii_whitespace() || matches!(byte, b',' | b';' | b'-'));
     let (mut group, mut is_over) = (0, false);
     for word in words.filter(|word| !word.is_empty()) {
@@ -133,8 +136,7 @@ fn tokens(text: &[u8], bytes: &mut Vec<u8>) -> Result<usize, String> {
         let count = digits.len().div_ceil(2);
         if is_over || group != 0 && count > group {
             return Err(format!(
-                "{} is longer or shorter than the numbers before it: bytes of one row have one length; is it a time, an \
-                 offset or a text?",
+                "{} and the numbers before it differ in length; use only bytes of equal length, without times, offsets or text",
                 quoted(word)
             ));
         }
@@ -151,10 +153,7 @@ pub(super) fn push_digits(digits: &[u8], bytes: &mut Vec<u8>) {
 }
 
 pub(super) fn not_a_byte(word: &[u8]) -> String {
-    format!(
-        "{} is not a byte; give each as two hexadecimal digits, with or without 0x, such as 55 AA 0x01",
-        quoted(word)
-    )
+    format!("{} is not a byte; use two hexadecimal digits per byte, such as 55 AA 0x01", quoted(word))
 }
 
 #[cfg(test)]
@@ -190,8 +189,8 @@ mod tests {
             let text: String = bytes[1..].iter().map(|byte| format!("{byte:02x}")).collect();
             let found = shape.map_or_else(
                 |_| "no".into(),
-                |Shape { group, is_proven, has_text }| {
-                    let [proven, said] = [(is_proven, " proven"), (has_text, " text")]
+                |RowFormat { group, is_order_known, has_text }| {
+                    let [proven, said] = [(is_order_known, " proven"), (has_text, " text")]
                         .map(|(is, word)| if is { word } else { "" });
                     format!("{text} {group}{said}{proven}")
                 },

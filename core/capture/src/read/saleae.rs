@@ -66,8 +66,9 @@ impl DecodedBytes {
     fn head(&mut self, line: &[u8]) -> Result<(), String> {
         let separator = separator(line);
         self.fields.split(line, separator)?;
-        let columns = Columns::find(&self.fields.names())
-            .ok_or("the head does not name a time and a value, such as name,type,start_time,duration,data")?;
+        let columns = Columns::find(&self.fields.names()).ok_or(
+            "the header has no time or no value; use columns such as name,type,start_time,duration,data",
+        )?;
         self.times = Times::new(columns.unit);
         self.columns = Some((separator, columns));
         Ok(())
@@ -88,7 +89,7 @@ impl Reader for DecodedBytes {
         self.fields.split(line, separator)?;
         if self.fields.len() <= columns.time.max(columns.value) {
             return Err(format!(
-                "{} has {} fields; the head names more: is the row whole?",
+                "{} has {} fields, fewer than the header; export again, the row is incomplete",
                 quoted(line),
                 self.fields.len()
             ));
@@ -102,10 +103,7 @@ impl Reader for DecodedBytes {
         }
         let field = self.fields.get(columns.value);
         let byte = value(field).ok_or_else(|| {
-            format!(
-                "{} is not a byte; export the data in hexadecimal, as 0x55, or decimal, from 0 to 255",
-                quoted(field)
-            )
+            format!("{} is not a byte; use hexadecimal (0x55) or decimal (0 to 255) data", quoted(field))
         })?;
         let error = columns.error.map_or(&b""[..], |at| self.fields.get(at)).to_ascii_lowercase();
         let framing_error =
@@ -121,11 +119,13 @@ impl Reader for DecodedBytes {
 
     fn finish(mut self) -> (Capture, Result<(), String>) {
         self.times.finish(&mut self.recorder);
-        if !self.others.is_empty() {
-            self.recorder.leave_out(format!("rows that are no bytes: {}", self.others.to_text()));
-        }
+        self.recorder.note_skipped("rows without bytes", &self.others);
         let capture = self.recorder.finish();
-        let missing = if capture.is_empty() { Err("the table has no bytes".into()) } else { Ok(()) };
+        let missing = if capture.is_empty() {
+            Err("the table has no bytes; record or export again".into())
+        } else {
+            Ok(())
+        };
         (capture, missing)
     }
 }

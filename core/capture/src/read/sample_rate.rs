@@ -38,12 +38,11 @@ pub(super) struct SampleRate {
 
 impl SampleRate {
     /// Fails if an earlier comment gives another rate. Ignores text that is not a rate.
-    pub(super) fn give(&mut self, text: &str, line: u64) -> Result<(), String> {
+    pub(super) fn set(&mut self, text: &str, line: u64) -> Result<(), String> {
         let Some(rate) = parse_rate(text) else { return Ok(()) };
         match &self.first {
             Some((first, first_text, first_line)) if period(*first) != period(rate) => Err(format!(
-                "the sample rate is {} here and {} in line {first_line}; a file has one: delete the wrong line, or export \
-                 again",
+                "the sample rate {} differs from {} in line {first_line}; delete the wrong line or export again",
                 quoted(text.as_bytes()),
                 quoted(first_text.as_bytes())
             )),

@@ -6,8 +6,8 @@ use crate::{capture::MAX_CHANNELS, names::Meaning};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rank {
-    Named,
-    Meant,
+    FullName,
+    LastPart,
     Recognized,
     RecognizedBit,
     Other,
@@ -17,8 +17,8 @@ impl Rank {
     pub(super) fn of(name: &str, wanted: &[String]) -> Self {
         let last = name.rsplit('.').next().unwrap_or_default();
         match () {
-            () if wanted.iter().any(|wanted| wanted == name) => Self::Named,
-            () if wanted.iter().any(|wanted| wanted.eq_ignore_ascii_case(last)) => Self::Meant,
+            () if wanted.iter().any(|wanted| wanted == name) => Self::FullName,
+            () if wanted.iter().any(|wanted| wanted.eq_ignore_ascii_case(last)) => Self::LastPart,
             () if !Meaning::is_recognized(name) => Self::Other,
             () if name.ends_with(']') => Self::RecognizedBit,
             () => Self::Recognized,
@@ -30,9 +30,10 @@ struct Candidate<T> {
     rank: Rank,
     order: u64,
     name: String,
-    what: T,
+    payload: T,
 }
 
+#[derive(Default)]
 pub(super) struct Selection<T> {
     best: Vec<Candidate<T>>,
     offered: u64,
@@ -43,27 +44,27 @@ impl<T> Selection<T> {
         Self { best: Vec::new(), offered: 0 }
     }
 
-    pub(super) fn offer(&mut self, name: String, what: T, recorder: &mut Recorder) {
-        let rank = Rank::of(&name, &recorder.wanted);
+    pub(super) fn offer(&mut self, name: String, payload: T, recorder: &mut Recorder) {
+        let rank = Rank::of(&name, &recorder.requested);
         let order = self.offered;
         self.offered += 1;
         let at = self.best.partition_point(|other| other.rank <= rank);
         if at >= MAX_CHANNELS {
-            return recorder.beyond(&name);
+            return recorder.omit(&name);
         }
-        self.best.insert(at, Candidate { rank, order, name, what });
+        self.best.insert(at, Candidate { rank, order, name, payload });
         if self.best.len() > MAX_CHANNELS
             && let Some(last) = self.best.pop()
         {
-            recorder.beyond(&last.name);
+            recorder.omit(&last.name);
         }
     }
 
     pub(super) fn finish(&mut self, recorder: &mut Recorder, mut each: impl FnMut(T, u8)) {
         self.best.sort_unstable_by_key(|candidate| candidate.order);
-        for Candidate { name, what, .. } in self.best.drain(..) {
+        for Candidate { name, payload, .. } in self.best.drain(..) {
             if let Some(bit) = recorder.channel(&name) {
-                each(what, bit);
+                each(payload, bit);
             }
         }
     }

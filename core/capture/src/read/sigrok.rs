@@ -75,19 +75,13 @@ impl Samples {
                 }
             });
         }
-        if !analog.is_empty() {
-            self.recorder.leave_out(format!("analog channels: {}", analog.to_text()));
-        }
+        self.recorder.note_skipped("analog channels", &analog);
         if self.recorder.capture.channels.is_empty() {
-            return Err(format!(
-                "{} has no level; export logic channels, whose samples are 0 or 1",
-                quoted(row)
-            ));
+            return Err(format!("{} has no level 0 or 1; export logic channels", quoted(row)));
         }
         let clock = if list.contains(&Column::Time) { self.head.clock() } else { RowClock::Count };
         if list.contains(&Column::Time) && clock == RowClock::Count {
-            self.recorder
-                .leave_out("the column of times, which has no unit: each row is taken as the next sample");
+            self.recorder.note("the time column has no unit and is skipped: each row is read as one sample");
         }
         self.recorder.capture.timebase = self.head.timebase(clock);
         self.columns = Some(Columns { separator, list, clock, first: 0 });
@@ -107,24 +101,24 @@ impl Samples {
             let start = nearest(first * period, units, rate);
             let sample =
                 |tick: u64| nearest((first + tick).checked_mul(period)?, units, rate)?.checked_sub(start?);
-            self.recorder.retime(sample).ok_or("times do not fit")?;
+            self.recorder.retime(sample).ok_or("the times do not fit into 64 bits; record a shorter time")?;
             columns.first = start.unwrap_or(0);
         }
         let sample = match columns.clock {
             RowClock::Count => self.rows,
             RowClock::Time => time,
             RowClock::Period { period, .. } => time / period,
-            RowClock::Nearest { units } => {
-                nearest(time, units, self.head.rate_hz().unwrap_or(1)).ok_or("the time does not fit")?
-            }
+            RowClock::Nearest { units } => nearest(time, units, self.head.rate_hz().unwrap_or(1))
+                .ok_or("the time does not fit into 64 bits; record a shorter time")?,
         };
         if self.rows == 0 {
             columns.first = sample;
         }
         let end = self.recorder.capture.end;
-        sample.checked_sub(columns.first).filter(|tick| *tick >= end).ok_or_else(|| {
-            format!("the time {time} is before the one of the row before; times must rise: export again")
-        })
+        sample
+            .checked_sub(columns.first)
+            .filter(|tick| *tick >= end)
+            .ok_or_else(|| format!("the time {time} is before the time of the previous row; export again"))
     }
 }
 
@@ -162,7 +156,7 @@ impl Reader for Samples {
                 }
                 (Column::Time, field) if columns.clock != RowClock::Count => {
                     let sum = whole(field)
-                        .ok_or_else(|| format!("{} is not a time; it is a whole number", quoted(field)))?;
+                        .ok_or_else(|| format!("{} is not a time; use a whole number", quoted(field)))?;
                     time = Some(sum);
                 }
                 (Column::Time | Column::Other, _) => {}
@@ -170,7 +164,7 @@ impl Reader for Samples {
         }
         if fields.next().is_some() {
             return Err(format!(
-                "{} has more fields than the rows before, which have {}",
+                "{} has more fields than the rows before; use {} in each row",
                 quoted(row),
                 columns.list.len()
             ));

@@ -5,9 +5,9 @@ use std::io::{BufRead, ErrorKind};
 
 /// A row of 64 channels has less than 1000 bytes, but all bytes of a hexadecimal file may be on one line.
 pub(super) const MAX_LINE: usize = 1 << 20;
-/// Also the size of the head from which the kind is detected.
+/// Bytes per read, and at the beginning of a file that determine its format.
 const PIECE: usize = 1 << 16;
-/// 10 ms at 26 MB/s.
+/// Bytes between two calls of `watch`: 10 ms at 26 MB/s.
 pub(super) const WATCH_EVERY: u64 = 1 << 18;
 
 /// A file that is being read.
@@ -18,8 +18,8 @@ pub(super) struct Source<'w, R> {
     watch: &'w mut dyn FnMut(u64) -> bool,
     buffer: Vec<u8>,
     start: usize,
-    read: u64,
-    watched: u64,
+    bytes_read: u64,
+    bytes_reported: u64,
     line: u64,
     /// Reported when all bytes before it are taken.
     failed: Option<String>,
@@ -28,8 +28,16 @@ pub(super) struct Source<'w, R> {
 impl<'w, R: BufRead> Source<'w, R> {
     /// Skips a byte order mark.
     pub(super) fn open(input: R, watch: &'w mut dyn FnMut(u64) -> bool) -> Result<Self, String> {
-        let mut source =
-            Self { input, watch, buffer: Vec::new(), start: 0, read: 0, watched: 0, line: 0, failed: None };
+        let mut source = Self {
+            input,
+            watch,
+            buffer: Vec::new(),
+            start: 0,
+            bytes_read: 0,
+            bytes_reported: 0,
+            line: 0,
+            failed: None,
+        };
         source.fill()?;
         if source.buffer.starts_with(b"\xef\xbb\xbf") {
             source.start = 3;
@@ -50,9 +58,9 @@ impl<'w, R: BufRead> Source<'w, R> {
     }
 
     /// Reads more behind the last `left` bytes; false at the end of the file.
-    fn more(&mut self, left: usize) -> Result<bool, String> {
+    fn read_more(&mut self, left: usize) -> Result<bool, String> {
         let start = self.buffer.len() - left;
-        bounded(self.buffer.get(start..).unwrap_or_default())?;
+        check_length(self.buffer.get(start..).unwrap_or_default())?;
         self.start = start;
         self.fill()
     }
@@ -63,16 +71,16 @@ impl<'w, R: BufRead> Source<'w, R> {
             while let Some(length) = rest.iter().position(|byte| *byte == b'\n') {
                 self.line += 1;
                 let (line, after) = rest.split_at(length);
-                if let Err(what) = bounded(line).and_then(|()| each(without_return(line))) {
-                    return Some(ReadError { line: self.line, what });
+                if let Err(message) = check_length(line).and_then(|()| each(without_return(line))) {
+                    return Some(ReadError { line: self.line, message });
                 }
                 rest = after.get(1..).unwrap_or_default();
             }
             let left = rest.len();
-            match self.more(left) {
+            match self.read_more(left) {
                 Ok(true) => {}
                 Ok(false) => break,
-                Err(what) => return Some(self.error(what, self.line + 1)),
+                Err(message) => return Some(self.error(message, self.line + 1)),
             }
         }
         let last = self.buffer.get(self.start..).unwrap_or_default();
@@ -80,7 +88,7 @@ impl<'w, R: BufRead> Source<'w, R> {
             return None;
         }
         self.line += 1;
-        each(without_return(last)).err().map(|what| ReadError { line: self.line, what })
+        each(without_return(last)).err().map(|message| ReadError { line: self.line, message })
     }
 
     pub(super) fn words(&mut self, mut each: impl FnMut(&[u8]) -> Result<(), String>) -> Option<ReadError> {
@@ -94,33 +102,33 @@ impl<'w, R: BufRead> Source<'w, R> {
                 rest = after;
                 let Some(length) = rest.iter().position(|byte| is_blank(*byte)) else { break };
                 let (word, after) = rest.split_at(length);
-                if let Err(what) = bounded(word).and_then(|()| each(word)) {
-                    return Some(ReadError { line: self.line, what });
+                if let Err(message) = check_length(word).and_then(|()| each(word)) {
+                    return Some(ReadError { line: self.line, message });
                 }
                 rest = after;
             }
             let left = rest.len();
-            match self.more(left) {
+            match self.read_more(left) {
                 Ok(true) => {}
                 Ok(false) => break,
-                Err(what) => return Some(self.error(what, self.line)),
+                Err(message) => return Some(self.error(message, self.line)),
             }
         }
         let last = self.buffer.get(self.start..).unwrap_or_default();
         if last.is_empty() {
             return None;
         }
-        each(last).err().map(|what| ReadError { line: self.line, what })
+        each(last).err().map(|message| ReadError { line: self.line, message })
     }
 
     /// A stop by `watch` belongs to no line.
-    fn error(&self, what: String, line: u64) -> ReadError {
-        ReadError { line: if what == ReadError::CANCELLED { 0 } else { line }, what }
+    fn error(&self, message: String, line: u64) -> ReadError {
+        ReadError { line: if message == ReadError::CANCELLED { 0 } else { line }, message }
     }
 
     fn fill(&mut self) -> Result<bool, String> {
-        if let Some(what) = self.failed.take() {
-            return Err(what);
+        if let Some(message) = self.failed.take() {
+            return Err(message);
         }
         self.buffer.drain(..self.start);
         self.start = 0;
@@ -133,32 +141,34 @@ impl<'w, R: BufRead> Source<'w, R> {
                 Ok(count) => end += count,
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
                 Err(error) => {
-                    self.failed = Some(format!("the file cannot be read further: {error}"));
+                    self.failed = Some(format!("the rest of the file cannot be read: {error}"));
                     break;
                 }
             }
         }
         self.buffer.truncate(end);
-        self.read += (end - before) as u64;
-        let over = end == before;
-        if self.read - self.watched >= WATCH_EVERY || over && self.read > self.watched {
-            self.watched = self.read;
-            if !(self.watch)(self.read) {
+        self.bytes_read += (end - before) as u64;
+        let is_end = end == before;
+        if self.bytes_read - self.bytes_reported >= WATCH_EVERY
+            || is_end && self.bytes_read > self.bytes_reported
+        {
+            self.bytes_reported = self.bytes_read;
+            if !(self.watch)(self.bytes_read) {
                 return Err(ReadError::CANCELLED.into());
             }
         }
-        match self.failed.take_if(|_| over) {
-            Some(what) => Err(what),
-            None => Ok(!over),
+        match self.failed.take_if(|_| is_end) {
+            Some(message) => Err(message),
+            None => Ok(!is_end),
         }
     }
 }
 
-fn bounded(line: &[u8]) -> Result<(), String> {
+fn check_length(line: &[u8]) -> Result<(), String> {
     if line.len() <= MAX_LINE {
         return Ok(());
     }
-    Err(format!("longer than {MAX_LINE} bytes; no kind of file that is read here has such lines"))
+    Err(format!("the line is longer than {MAX_LINE} bytes; use a text file in a supported format"))
 }
 
 fn without_return(line: &[u8]) -> &[u8] {

@@ -17,14 +17,14 @@ use stepscope_peripheral::signal;
 pub(super) struct TraceText {
     recorder: Recorder,
     signals: u32,
-    any: bool,
+    has_record: bool,
 }
 
 impl TraceText {
     pub(super) fn new(mut recorder: Recorder) -> Self {
         let names = (0..64).map_while(signal::name);
         let signals = names.filter_map(|name| recorder.channel(&name)).count() as u32;
-        Self { recorder, signals, any: false }
+        Self { recorder, signals, has_record: false }
     }
 }
 
@@ -35,22 +35,23 @@ impl Reader for TraceText {
             return Ok(());
         }
         let (cycle, levels) = record(line).ok_or_else(|| {
-            format!("{} is not a record; it is a cycle and the levels, both in hexadecimal, such as 1f4a 700000001", quoted(line))
+            format!(
+                "{} is not a record; use a cycle and the levels in hexadecimal, such as 1f4a 700000001",
+                quoted(line)
+            )
         })?;
         if levels >> self.signals != 0 {
             return Err(format!(
-                "{} has more than {} signals; is it a trace of Stepscope?",
+                "{} has more than {} signals; use a trace of Stepscope",
                 quoted(line),
                 self.signals
             ));
         }
-        if self.any && cycle <= self.recorder.capture.end {
+        if self.has_record && cycle <= self.recorder.capture.end {
             let before = self.recorder.capture.end;
-            return Err(format!(
-                "cycle {cycle:x} comes after cycle {before:x}; cycles must rise: sort the records"
-            ));
+            return Err(format!("cycle {cycle:x} follows cycle {before:x}; sort the records by cycle"));
         }
-        self.any = true;
+        self.has_record = true;
         self.recorder.levels(cycle, levels)
     }
 

@@ -16,11 +16,11 @@ use super::{
 use crate::timebase::Timebase;
 use core::{cmp::Ordering, ops::Range};
 
-/// Ticks of 1 as.
+/// Maximum decimal places: ticks of 1 as.
 const MAX_PLACES: u32 = 18;
-/// Trailing zeros of the first time count up to this number.
+/// Maximum decimal places of the first time, including trailing zeros.
 const MAX_FIRST_PLACES: u32 = 12;
-/// ns, however long the recording is.
+/// Minimum decimal places of long recordings: 1 ns.
 const MIN_PLACES: u32 = 9;
 /// A first time in this range (s) counts from 1970 or from the start of a long-running clock: it becomes tick 0.
 const EPOCH_S: Range<i128> = 100_000_000..100_000_000_000;
@@ -100,7 +100,7 @@ pub(super) struct Times {
     /// For times without a date: whole days so far, and the latest time of day.
     days: i128,
     latest: Option<Decimal>,
-    unclear: Option<[u64; 3]>,
+    ambiguous_date: Option<[u64; 3]>,
 }
 
 const DAY_S: i128 = 86_400;
@@ -115,7 +115,7 @@ impl Times {
             shifted_by: None,
             days: 0,
             latest: None,
-            unclear: None,
+            ambiguous_date: None,
         }
     }
 
@@ -125,8 +125,9 @@ impl Times {
             (Some(time), TimeUnit::Seconds(places)) => Decimal { places: time.places + places, ..time },
             (Some(time), TimeUnit::Cycles) => {
                 let whole = time.whole().filter(|cycle| *cycle >= 0);
-                let mantissa = whole
-                    .ok_or_else(|| format!("{} is not a cycle; give a whole number from 0", quoted(text)))?;
+                let mantissa = whole.ok_or_else(|| {
+                    format!("{} is not a cycle number; use a whole number from 0", quoted(text))
+                })?;
                 Decimal { mantissa, places: 0 }
             }
             (None, _) => return self.clock(text, recorder),
@@ -142,7 +143,7 @@ impl Times {
     ) -> Result<u64, String> {
         let too_long = || {
             format!(
-                "the time {} is too long for 64 bits; give times since the recording's beginning",
+                "the time {} does not fit into 64 bits; use times relative to the start of the recording",
                 quoted(text)
             )
         };
@@ -158,10 +159,7 @@ impl Times {
         let tick =
             if since.mantissa < 0 { None } else { Some(self.fitted(since, recorder).ok_or_else(too_long)?) };
         tick.filter(|tick| *tick >= recorder.capture.end).ok_or_else(|| {
-            format!(
-                "the time {} is before the one of the row before; times must rise: sort the rows by time",
-                quoted(text)
-            )
+            format!("the time {} is before the time of the previous row; sort the rows by time", quoted(text))
         })
     }
 
@@ -198,7 +196,7 @@ impl Times {
         let stamp = Stamp::parse(text)
             .filter(|stamp| self.unit == TimeUnit::Seconds(0) && stamp.length == text.len())
             .ok_or_else(|| {
-                format!("{} is not a time; give a number, such as 0.00125 or 1.25e-3", quoted(text))
+                format!("{} is not a time; use a number such as 0.00125 or 1.25e-3", quoted(text))
             })?;
         self.stamp(stamp, text, recorder)
     }
@@ -211,11 +209,11 @@ impl Times {
         recorder: &mut Recorder,
     ) -> Result<u64, String> {
         let mut time = stamp.seconds;
-        if let Dated::Unclear(date) = stamp.dated
-            && *self.unclear.get_or_insert(date) != date
+        if let Dated::Ambiguous(date) = stamp.dated
+            && *self.ambiguous_date.get_or_insert(date) != date
         {
             return Err(format!(
-                "{} is another day, and the dates do not say which number is the month; write dates as 2026-11-26",
+                "{} is on another day, and the order of day and month is unclear; use dates such as 2026-11-26",
                 quoted(text)
             ));
         }
@@ -245,18 +243,18 @@ impl Times {
             recorder.capture.timebase = denominator.and_then(|denominator| Timebase::new(1, denominator));
         }
         if self.is_rounded {
-            recorder.leave_out(format!(
-                "times have more decimal places than fit: they are rounded to the nearest 1e-{} s",
+            recorder.note(format!(
+                "times have too many decimal places and are rounded to the nearest 1e-{} s",
                 self.places.unwrap_or(MAX_PLACES)
             ));
         }
         if self.days > 0 {
             let times = if self.days == 1 { "once".into() } else { format!("{} times", self.days) };
-            recorder.leave_out(format!("the clock passes midnight {times}: the times go on from day to day"));
+            recorder.note(format!("the clock passes midnight {times}; later times belong to the next day"));
         }
         if let Some(first) = self.shifted_by {
-            recorder.leave_out(format!(
-                "the first time is {first}: it is taken as 0, and all others count from it"
+            recorder.note(format!(
+                "the first time is {first} and is read as 0; all other times are relative to it"
             ));
         }
     }

@@ -8,7 +8,7 @@
 //! #10 1!
 //! ```
 //!
-//! Words are read one by one, so endless comments and nested scopes need no memory.
+//! Words are read one by one, so endless comments and nested scopes; dump fewer need no memory.
 
 mod header;
 mod variables;
@@ -27,13 +27,13 @@ pub(super) struct Vcd {
     header: Header,
     variables: Variables,
     expected: Expected,
-    body: bool,
+    is_in_body: bool,
     now: u64,
     levels: u64,
-    touched: bool,
+    has_pending_levels: bool,
     /// Between `$dumpoff` and its end all values are x, whatever the levels are.
-    off: bool,
-    offs: u64,
+    is_off: bool,
+    off_count: u64,
     unknown: u64,
 }
 
@@ -42,7 +42,7 @@ const MAX_TEXT: usize = 1 << 16;
 enum Expected {
     /// The first keyword; some programs print text before it.
     Start,
-    Any,
+    Token,
     Command(Keyword),
     Scalar(Value),
     Vector,
@@ -57,24 +57,24 @@ impl Vcd {
             header: Header::default(),
             variables: Variables::new(),
             expected: Expected::Start,
-            body: false,
+            is_in_body: false,
             now: 0,
             levels: 0,
-            touched: false,
-            off: false,
-            offs: 0,
+            has_pending_levels: false,
+            is_off: false,
+            off_count: 0,
             unknown: 0,
         }
     }
 
     fn begin(&mut self) {
-        if !self.body {
-            self.body = true;
+        if !self.is_in_body {
+            self.is_in_body = true;
             self.header.select(&mut self.variables, &mut self.recorder);
         }
     }
 
-    fn any(&mut self, word: &[u8]) -> Result<(), String> {
+    fn token(&mut self, word: &[u8]) -> Result<(), String> {
         let (&kind, rest) = word.split_first().unwrap_or((&b' ', &[]));
         if kind == b'$' {
             return self.keyword(word);
@@ -92,7 +92,10 @@ impl Vcd {
             b'#' => self.time(rest),
             b'b' | b'B' => {
                 self.variables.set_value(rest).map_err(|letter| {
-                    format!("{} is no value of a vector: “{letter}” is neither 0, 1, x nor z", quoted(word))
+                    format!(
+                        "{} is not a vector value because of “{letter}”; use only 0, 1, x and z",
+                        quoted(word)
+                    )
                 })?;
                 self.expected = Expected::Vector;
                 Ok(())
@@ -106,26 +109,26 @@ impl Vcd {
                 Ok(())
             }
             b'p' => Err(format!(
-                "{} is of an extended dump ($dumpports); write a plain one ($dumpvars)",
+                "{} is part of an extended dump ($dumpports); use a plain one ($dumpvars)",
                 quoted(word)
             )),
             _ => Err(format!(
-                "{} is neither a time (#), a value (0, 1, x, z, b, r, s) nor a keyword ($)",
+                "{} is neither a time (#), a value (0, 1, x, z, b, r, s) nor a keyword ($); record or copy the dump again",
                 quoted(word)
             )),
         }
     }
 
     fn keyword(&mut self, word: &[u8]) -> Result<(), String> {
-        self.expected = Expected::Any;
+        self.expected = Expected::Token;
         match word {
             b"$dumpvars" | b"$dumpall" | b"$dumpon" => self.begin(),
             b"$dumpoff" => {
                 self.begin();
-                self.off = true;
-                self.offs += 1;
+                self.is_off = true;
+                self.off_count += 1;
             }
-            b"$end" => self.off = false,
+            b"$end" => self.is_off = false,
             _ => {
                 self.header.begin();
                 self.expected = Expected::Command(Keyword::parse(word));
@@ -146,7 +149,7 @@ impl Vcd {
         if !last {
             return Ok(());
         }
-        self.expected = Expected::Any;
+        self.expected = Expected::Token;
         match keyword {
             Keyword::EndDefinitions => self.begin(),
             Keyword::Timescale => {
@@ -155,9 +158,9 @@ impl Vcd {
                     && first != timescale
                 {
                     return Err(format!(
-                        "the time scale is {:e} s here and {:e} s before; a dump has one: record again",
-                        timescale.seconds(),
-                        first.seconds()
+                        "the time scale changes from {:e} s to {:e} s; use one per dump: record again",
+                        first.seconds(),
+                        timescale.seconds()
                     ));
                 }
             }
@@ -165,7 +168,7 @@ impl Vcd {
             Keyword::Upscope => self.header.leave(),
             Keyword::Var => {
                 self.header.variable(&mut self.recorder)?;
-                if self.body {
+                if self.is_in_body {
                     self.header.select(&mut self.variables, &mut self.recorder);
                 }
             }
@@ -176,39 +179,37 @@ impl Vcd {
 
     fn time(&mut self, digits: &[u8]) -> Result<(), String> {
         let time = whole(digits).ok_or_else(|| {
-            format!("#{} is not a time; it is a whole number of less than 2^64", quoted(digits))
+            format!("#{} is not a time; use a whole number of less than 2^64", quoted(digits))
         })?;
         if time < self.now {
             return Err(format!(
-                "time {time} comes after time {}; times must rise: dump again, or delete what comes twice",
+                "time {time} follows time {}; dump again or delete the repeated part",
                 self.now
             ));
         }
         // Values before the first time belong to it.
         if time > self.now {
-            if self.touched {
+            if self.has_pending_levels {
                 self.recorder.levels(self.now, self.levels)?;
             }
             self.recorder.next_time();
         }
-        (self.now, self.touched) = (time, true);
+        (self.now, self.has_pending_levels) = (time, true);
         Ok(())
     }
 
     fn text(&mut self, length: usize, word: &[u8]) -> Result<(), String> {
         let length = length + word.len();
         if length > MAX_TEXT {
-            return Err(format!(
-                "a string of more than {MAX_TEXT} bytes; is the code of its variable missing?"
-            ));
+            return Err(format!("a string of more than {MAX_TEXT} bytes; add the code of its variable"));
         }
         let is_over = self.header.ends_string(word);
-        self.expected = if is_over { Expected::Any } else { Expected::Text(length) };
+        self.expected = if is_over { Expected::Token } else { Expected::Text(length) };
         Ok(())
     }
 
     fn scalar(&mut self, value: Value, code: &[u8]) {
-        if self.off {
+        if self.is_off {
             return;
         }
         if let Some(variable) = self.variables.find(code) {
@@ -217,12 +218,12 @@ impl Vcd {
             self.recorder.edges(self.levels ^ levels);
             self.levels = levels;
             self.unknown += u64::from(value == Value::Unknown);
-            self.touched = true;
+            self.has_pending_levels = true;
         }
     }
 
     fn vector(&mut self, code: &[u8]) {
-        if self.off {
+        if self.is_off {
             return;
         }
         if let Some((levels, changed, unknown)) = self.variables.vector(code) {
@@ -230,7 +231,7 @@ impl Vcd {
             self.recorder.edges(self.levels ^ levels);
             self.levels = levels;
             self.unknown += unknown;
-            self.touched = true;
+            self.has_pending_levels = true;
         }
     }
 }
@@ -238,7 +239,7 @@ impl Vcd {
 impl Reader for Vcd {
     fn take(&mut self, word: &[u8]) -> Result<(), String> {
         match self.expected {
-            Expected::Any => return self.any(word),
+            Expected::Token => return self.token(word),
             Expected::Command(keyword) => return self.argument(keyword, word),
             Expected::Start if word.starts_with(b"$") => return self.keyword(word),
             Expected::Start => return Ok(()),
@@ -247,37 +248,43 @@ impl Reader for Vcd {
             Expected::Other => {}
             Expected::Text(length) => return self.text(length, word),
         }
-        self.expected = Expected::Any;
+        self.expected = Expected::Token;
         Ok(())
     }
 
     fn finish(mut self) -> (Capture, Result<(), String>) {
-        let is_whole = self.body;
+        let has_body = self.is_in_body;
         self.begin();
         let mut missing = match self.expected {
-            Expected::Command(keyword) => Err(format!("the file ends within {keyword}; it is truncated")),
+            Expected::Command(keyword) => Err(format!(
+                "the file ends within {}; it is truncated: record or copy it again",
+                keyword.name()
+            )),
             Expected::Scalar(_) | Expected::Vector | Expected::Other | Expected::Text(_) => {
-                Err("the file ends within a value change; it is truncated".into())
+                Err("the file ends within a value change; it is truncated: record or copy it again".into())
             }
-            _ if !is_whole => Err("the file ends before $enddefinitions; it is truncated".into()),
+            _ if !has_body => {
+                Err("the file ends before $enddefinitions; it is truncated: record or copy it again".into())
+            }
             _ if self.recorder.capture.channels.is_empty() => {
-                Err("the dump has no wire and no register; dump the lines of the motor, such as STEP and DIR"
-                    .into())
+                Err("the dump has no wire or register; dump signals such as STEP and DIR".into())
             }
             _ => Ok(()),
         };
-        if self.touched && !self.recorder.capture.channels.is_empty() {
+        if self.has_pending_levels && !self.recorder.capture.channels.is_empty() {
             missing = missing.and(self.recorder.levels(self.now, self.levels));
         }
         let others: Names = self.header.into_others();
-        if !others.is_empty() {
-            self.recorder.leave_out(format!("variables that are no lines: {}", others.to_text()));
-        }
-        self.recorder.leave_out_unknown(self.unknown, "x or z");
-        if self.offs > 0 {
-            let times = if self.offs == 1 { "once".into() } else { format!("{} times", grouped(self.offs)) };
-            self.recorder.leave_out(format!(
-                "the dump was switched off {times} ($dumpoff); the levels are taken to stay"
+        self.recorder.note_skipped("variables that are neither wires nor registers", &others);
+        self.recorder.note_unknown_levels(self.unknown, "x or z");
+        if self.off_count > 0 {
+            let times = if self.off_count == 1 {
+                "once".into()
+            } else {
+                format!("{} times", grouped(self.off_count))
+            };
+            self.recorder.note(format!(
+                "the dump was switched off {times} ($dumpoff); the levels are read as unchanged"
             ));
         }
         (self.recorder.finish(), missing)

@@ -10,18 +10,18 @@ const USUAL: [u32; 27] = [
     2_000_000, 3_000_000,
 ];
 /// Five times the far more usual 115200, so it is used only if no other rate fits.
-const RARE: u32 = 576_000;
+const LAST_RESORT: u32 = 576_000;
 /// Rare rates come last in an ambiguous result.
-const SELDOM: [u32; 9] = [14_400, 28_800, 31_250, 74_880, 76_800, 125_000, 128_000, 256_000, RARE];
+const RARE_RATES: [u32; 9] = [14_400, 28_800, 31_250, 74_880, 76_800, 125_000, 128_000, 256_000, LAST_RESORT];
 /// Maximum deviation of a measured rate from a usual one: oscillators' tolerance.
-const NEAR: f64 = 0.02;
+const MAX_DEVIATION: f64 = 0.02;
 /// Minimum samples per bit.
 const MIN_BIT: f64 = 2.5;
 /// Edges on which all bit times are tried, and on which the best are measured.
 const TRIED_EDGES: usize = 300;
 const MEASURED_EDGES: usize = 4000;
 /// Ratio of consecutive trial bit times.
-const STEP: f64 = 1.0 + 1.0 / 128.0;
+const BIT_RATIO: f64 = 1.0 + 1.0 / 128.0;
 /// Maximum number of bit times that are measured on more edges.
 const MAX_MEASURED: usize = 16;
 /// Maximum share of faulty words.
@@ -86,7 +86,7 @@ struct Quality {
 }
 
 impl Quality {
-    fn of(edges: &[Edge], bit: f64, format: Format) -> Self {
+    fn measure(edges: &[Edge], bit: f64, format: Format) -> Self {
         let mut found = Self { bit, ..Self::default() };
         let (mut faults, mut edge_count, mut squares) = (0_u32, 0_usize, 0.0);
         let (mut sxx, mut sxy) = (0.0, 0.0);
@@ -115,7 +115,7 @@ impl Quality {
         let mut best = self;
         for _ in 0..4 {
             let Some(bit) = best.refined_bit.filter(|bit| *bit >= MIN_BIT && *bit != best.bit) else { break };
-            let next = Self::of(edges, bit, format);
+            let next = Self::measure(edges, bit, format);
             if next.cost() > best.cost() {
                 break;
             }
@@ -178,7 +178,7 @@ fn is_inverted(edges: &[Edge], format: Format, bit: f64) -> bool {
         return false;
     }
     let edges = edges.get(..MEASURED_EDGES).unwrap_or(edges);
-    let own = Quality::of(edges, bit, format);
+    let own = Quality::measure(edges, bit, format);
     let ends_low = edges.last().is_some_and(|last| !last.high);
     best_quality(&inverted(edges), format).is_some_and(|other| {
         other.fault_share < own.fault_share || ends_low && other.fault_share <= own.fault_share
@@ -224,10 +224,12 @@ fn is_too_coarse(edges: &[Edge], format: Format, best: Option<Quality>) -> bool 
         return false;
     }
     let max_share = best.map_or(LINE_FAULTS, |best| best.fault_share.min(LINE_FAULTS));
-    core::iter::successors(Some(1.0), |bit| Some(bit * STEP)).take_while(|bit| *bit < MIN_BIT).any(|bit| {
-        let found = Quality::of(tried, bit, format);
-        found.fits() && found.fault_share <= max_share
-    })
+    core::iter::successors(Some(1.0), |bit| Some(bit * BIT_RATIO)).take_while(|bit| *bit < MIN_BIT).any(
+        |bit| {
+            let found = Quality::measure(tried, bit, format);
+            found.fits() && found.fault_share <= max_share
+        },
+    )
 }
 
 /// Decoded bytes and their faults.
@@ -266,11 +268,11 @@ fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec
         if bit < MIN_BIT {
             return None;
         }
-        let trial = Quality::of(tried, bit, format).refined(tried, format);
+        let trial = Quality::measure(tried, bit, format).refined(tried, format);
         if !trial.fits() {
             return None;
         }
-        let own = Quality::of(edges, trial.bit, format).refined(edges, format);
+        let own = Quality::measure(edges, trial.bit, format).refined(edges, format);
         let fits = own.fits() && own.fits_as_well_as(best) && usual(hz, &own) == Some(*rate);
         fits.then_some((own, *rate))
     };
@@ -279,7 +281,8 @@ fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec
     // Pauses do not exclude the lowest rate.
     if let Some((lowest, rate)) = found.first().copied() {
         let is_likely = |(own, other): &(Quality, u32)| {
-            *other == rate || *other != RARE && !is_too_fast(tried, own.bit, lowest.bit / own.bit, format)
+            *other == rate
+                || *other != LAST_RESORT && !is_too_fast(tried, own.bit, lowest.bit / own.bit, format)
         };
         found.retain(is_likely);
     }
@@ -327,7 +330,7 @@ fn usual(hz: f64, found: &Quality) -> Option<u32> {
     let is_near = |deviation: f64| {
         // A word measures nine bits to one sample; the error falls with the root of the number of words.
         let samples = deviation * 9.0 * found.bit;
-        deviation <= NEAR || samples * samples * f64::from(found.words) <= 1.0
+        deviation <= MAX_DEVIATION || samples * samples * f64::from(found.words) <= 1.0
     };
     let near = USUAL.into_iter().filter(|usual| is_near(deviation(usual)));
     near.min_by(|a, b| deviation(a).total_cmp(&deviation(b)))
@@ -342,7 +345,7 @@ fn by_distance(fitting: &[(Quality, u32)], hz: f64) -> Vec<u32> {
     let mut rates: Vec<(u32, bool, u32)> = fitting
         .iter()
         .map(|(found, rate)| {
-            ((100.0 * distance(hz, found.bit, *rate) + 0.5) as u32, SELDOM.contains(rate), *rate)
+            ((100.0 * distance(hz, found.bit, *rate) + 0.5) as u32, RARE_RATES.contains(rate), *rate)
         })
         .collect();
     rates.sort_unstable();
@@ -364,8 +367,8 @@ fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
     let mut bit = (shortest / 10.0).max(MIN_BIT);
     let mut all = Vec::new();
     while bit <= shortest * 1.35 + 1.5 {
-        all.push(Quality::of(tried, bit, format));
-        bit *= STEP;
+        all.push(Quality::measure(tried, bit, format));
+        bit *= BIT_RATIO;
     }
     let cost = |index: usize| all.get(index).map_or(f64::MAX, Quality::cost);
     let mut lowest: Vec<&Quality> = all
@@ -380,7 +383,7 @@ fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
     let measured = edges.get(..MEASURED_EDGES).unwrap_or(edges);
     let refined = |each: &Quality| {
         let first = each.refined(tried, format);
-        Quality::of(measured, first.bit, format).refined(measured, format)
+        Quality::measure(measured, first.bit, format).refined(measured, format)
     };
     let all: Vec<Quality> = lowest.into_iter().take(MAX_MEASURED).map(refined).collect();
     let best = *all.iter().min_by(|a, b| a.cost().total_cmp(&b.cost()))?;
@@ -390,7 +393,7 @@ fn best_quality(edges: &[Edge], format: Format) -> Option<Quality> {
     best.fits().then_some(best)
 }
 
-/// Detects a serial line by its edges. Pulses of about one length are those of STEP or an encoder.
+/// Detects a serial line by its edges. Pulses of about one length are those of BIT_RATIO or an encoder.
 pub(crate) fn detect_line(edges: &[Edge]) -> Option<IdleLevel> {
     if edges.len() <= LINE_PULSES {
         return None;

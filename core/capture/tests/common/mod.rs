@@ -1,4 +1,4 @@
-//! What the tests of files share.
+//! Helpers of the tests of files.
 #![allow(dead_code, reason = "each test uses its part of it")]
 
 use std::fmt::Write as _;
@@ -10,9 +10,9 @@ pub(crate) fn read_bytes(bytes: impl AsRef<[u8]>) -> Reading {
     read(Cursor::new(bytes), &Limits::default(), &mut |_| true)
 }
 
-/// A reading in a line, and a line for each thing that is said of it:
+/// A reading as text: the capture in one line, then a line per note and the error, such as
 /// `Vcd 1/1000 [STEP DIR] 0:0 10:1 end 12`, changes as tick:levels, bytes as tick:channel:byte, positions as tick@position.
-pub(crate) fn told(reading: &Reading) -> String {
+pub(crate) fn summary(reading: &Reading) -> String {
     let capture = &reading.capture;
     let names: Vec<&str> = capture.channels.iter().map(|channel| channel.name.as_str()).collect();
     let mut text = format!("{:?}", capture.format);
@@ -40,11 +40,11 @@ pub(crate) fn told(reading: &Reading) -> String {
     text
 }
 
-/// Reads each text and compares what is told.
+/// Reads each text and compares its summary.
 pub(crate) fn check(rows: &[(&str, &str)]) {
     let mut wrong = String::new();
     for (text, expected) in rows {
-        let found = told(&read_bytes(text));
+        let found = summary(&read_bytes(text));
         if found != *expected {
             let _ = write!(wrong, "\n--- {text:?}\nexpected {expected}\n   found {found}\n");
         }

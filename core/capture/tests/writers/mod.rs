@@ -15,7 +15,7 @@ pub(crate) struct Levels {
     pub(crate) end: u64,
 }
 
-/// How sigrok writes a table: labels, times, whether rows that change nothing are left out, what separates fields.
+/// Options of a sigrok table: labels, times, whether rows without changes are omitted, separator.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Samples {
     labels: Option<bool>,

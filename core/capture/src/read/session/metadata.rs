@@ -41,7 +41,7 @@ impl Metadata {
             {
                 let key = key.trim();
                 if metadata.set(key, value.trim()) && !given.insert(key) {
-                    return Err(format!("“metadata” gives {key} twice; save the session again"));
+                    return Err(format!("“metadata” contains {key} twice; save the session again"));
                 }
             }
         }
@@ -51,7 +51,7 @@ impl Metadata {
             _ => None,
         };
         if let Some(probe) = metadata.probes.windows(2).find_map(same) {
-            return Err(format!("“metadata” gives probe{probe} twice; save the session again"));
+            return Err(format!("“metadata” contains probe{probe} twice; save the session again"));
         }
         Ok(metadata)
     }

@@ -16,7 +16,7 @@ const MAX_IDLE: u64 = 10_000;
 pub(super) struct SampleStream<'a> {
     recorder: &'a mut Recorder,
     watch: &'a mut dyn FnMut(u64) -> bool,
-    unit: usize,
+    sample_size: usize,
     bits: Vec<(usize, u8)>,
     last: Vec<u8>,
     partial: Vec<u8>,
@@ -35,12 +35,15 @@ impl<'a> SampleStream<'a> {
     ) -> Result<Self, String> {
         let unit = metadata.unitsize;
         if !(1..=MAX_UNIT).contains(&unit) {
-            return Err(format!("a sample of {unit} bytes (unitsize); it has 1 to {MAX_UNIT}"));
+            return Err(format!("unitsize: {unit} is out of range; use 1 to {MAX_UNIT}"));
         }
         let mut bits = Vec::new();
         for (bit, name) in &metadata.probes {
             if *bit >= 8 * unit {
-                return Err(format!("{name} is bit {bit} of samples of {unit} bytes (unitsize)"));
+                return Err(format!(
+                    "{name} is bit {bit}, but samples have {} bits; save the session again",
+                    8 * unit
+                ));
             }
         }
         let channels = select(metadata.probes.iter().map(|(_, name)| name.as_str()), recorder);
@@ -55,7 +58,7 @@ impl<'a> SampleStream<'a> {
         Ok(Self {
             recorder,
             watch,
-            unit,
+            sample_size: unit,
             bits,
             last,
             partial,
@@ -69,23 +72,23 @@ impl<'a> SampleStream<'a> {
     pub(super) fn take(&mut self, bytes: &[u8]) -> Result<(), String> {
         let mut rest = bytes;
         if !self.partial.is_empty() {
-            let (missing, after) = rest.split_at(rest.len().min(self.unit - self.partial.len()));
+            let (missing, after) = rest.split_at(rest.len().min(self.sample_size - self.partial.len()));
             self.partial.extend_from_slice(missing);
             rest = after;
-            if self.partial.len() == self.unit {
+            if self.partial.len() == self.sample_size {
                 let sample = core::mem::take(&mut self.partial);
                 self.run(&sample)?;
             }
         }
-        let whole = rest.len() - rest.len() % self.unit;
+        let whole = rest.len() - rest.len() % self.sample_size;
         let (samples, partial) = rest.split_at(whole);
         self.run(samples)?;
         self.partial.extend_from_slice(partial);
-        self.tell(bytes.len() as u64)
+        self.report_progress(bytes.len() as u64)
     }
 
     fn run(&mut self, samples: &[u8]) -> Result<(), String> {
-        let unit = self.unit;
+        let unit = self.sample_size;
         let mut rest = samples;
         while !rest.is_empty() {
             let same = match (self.last.as_slice(), unit) {
@@ -118,11 +121,11 @@ impl<'a> SampleStream<'a> {
         self.bits.iter().fold(0, |levels, (bit, channel)| levels | u64::from(high(*bit)) << channel)
     }
 
-    pub(super) const fn unpacked(&mut self, packed: u64) {
+    pub(super) const fn add_packed(&mut self, packed: u64) {
         self.packed += packed;
     }
 
-    fn tell(&mut self, bytes: u64) -> Result<(), String> {
+    fn report_progress(&mut self, bytes: u64) -> Result<(), String> {
         self.unreported += bytes;
         if self.unreported < WATCH_EVERY {
             return Ok(());
@@ -139,9 +142,9 @@ impl<'a> SampleStream<'a> {
             return Ok(());
         }
         Err(format!(
-            "the last sample has {} bytes of {}; the session is not whole",
+            "the session is incomplete: its last sample has {} of {} bytes; save it again",
             self.partial.len(),
-            self.unit
+            self.sample_size
         ))
     }
 }

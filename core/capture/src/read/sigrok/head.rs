@@ -51,7 +51,7 @@ impl Head {
             if let Some(rate) =
                 text.strip_prefix("Samplerate:").or_else(|| text.strip_prefix("META samplerate:"))
             {
-                self.rate.give(rate.trim(), self.line)?;
+                self.rate.set(rate.trim(), self.line)?;
             } else if let Some((_, names)) =
                 text.strip_prefix("Channels (").and_then(|text| text.split_once("):"))
             {

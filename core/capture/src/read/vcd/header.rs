@@ -14,7 +14,6 @@ use crate::{
     },
     timebase::Timebase,
 };
-use core::fmt;
 use std::collections::BTreeSet;
 
 const MAX_DEPTH: usize = 200;
@@ -31,32 +30,27 @@ pub(super) enum Keyword {
     Skipped,
 }
 
+const KEYWORDS: [(Keyword, &str); 5] = [
+    (Keyword::Timescale, "$timescale"),
+    (Keyword::Scope, "$scope"),
+    (Keyword::Upscope, "$upscope"),
+    (Keyword::Var, "$var"),
+    (Keyword::EndDefinitions, "$enddefinitions"),
+];
+
 impl Keyword {
     pub(super) fn parse(word: &[u8]) -> Self {
-        match word {
-            b"$timescale" => Self::Timescale,
-            b"$scope" => Self::Scope,
-            b"$upscope" => Self::Upscope,
-            b"$var" => Self::Var,
-            b"$enddefinitions" => Self::EndDefinitions,
-            _ => Self::Skipped,
-        }
+        let found = KEYWORDS.iter().find(|(_, text)| text.as_bytes() == word);
+        found.map_or(Self::Skipped, |(keyword, _)| *keyword)
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        let found = KEYWORDS.iter().find(|(keyword, _)| *keyword == self);
+        found.map_or("a command", |(_, text)| text)
     }
 }
 
-impl fmt::Display for Keyword {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Timescale => "$timescale",
-            Self::Scope => "$scope",
-            Self::Upscope => "$upscope",
-            Self::Var => "$var",
-            Self::EndDefinitions => "$enddefinitions",
-            Self::Skipped => "a command",
-        })
-    }
-}
-
+#[derive(Default)]
 pub(super) struct Header {
     command: Vec<u8>,
     path: String,
@@ -67,19 +61,6 @@ pub(super) struct Header {
     strings: BTreeSet<Box<[u8]>>,
 }
 
-impl Default for Header {
-    fn default() -> Self {
-        Self {
-            command: Vec::new(),
-            path: String::new(),
-            scopes: Vec::new(),
-            others: Names::new(),
-            selection: Selection::new(),
-            strings: BTreeSet::new(),
-        }
-    }
-}
-
 impl Header {
     pub(super) fn begin(&mut self) {
         self.command.clear();
@@ -87,7 +68,7 @@ impl Header {
 
     pub(super) fn argument(&mut self, word: &[u8]) -> Result<(), String> {
         if self.command.len() + word.len() > MAX_COMMAND {
-            return Err(format!("a command of more than {MAX_COMMAND} bytes; is its $end missing?"));
+            return Err(format!("a command of more than {MAX_COMMAND} bytes; add its $end"));
         }
         self.command.extend_from_slice(word);
         self.command.push(b' ');
@@ -115,7 +96,7 @@ impl Header {
         let base = whole(number).zip(denominator).and_then(|(number, unit)| Timebase::new(number, unit));
         base.ok_or_else(|| {
             format!(
-                "$timescale {} is not a time scale; it is a whole number and s, ms, us, ns, ps or fs",
+                "$timescale {} is not a time scale; use a whole number and s, ms, us, ns, ps or fs",
                 quoted(&text)
             )
         })
@@ -123,7 +104,7 @@ impl Header {
 
     pub(super) fn enter(&mut self) -> Result<(), String> {
         if self.scopes.len() >= MAX_DEPTH {
-            return Err(format!("more than {MAX_DEPTH} nested scopes"));
+            return Err(format!("more than {MAX_DEPTH} nested scopes; dump fewer"));
         }
         let name = self.words().nth(1).map(|name| String::from_utf8_lossy(name).into_owned());
         self.scopes.push(self.path.len());
@@ -144,11 +125,11 @@ impl Header {
         let (Some(kind), Some(size), Some(code), Some(name)) =
             (words.next(), words.next(), words.next(), words.next())
         else {
-            return Err(format!("$var {} is not whole: type, size, code and name are its words", text()));
+            return Err(format!("$var {} is incomplete; use a type, size, code and name", text()));
         };
         let size = whole(size)
             .and_then(|size| u32::try_from(size).ok())
-            .ok_or_else(|| format!("$var {} has no size: a whole number of bits comes second", text()))?;
+            .ok_or_else(|| format!("$var {} has no size; use a number of bits as its second word", text()))?;
         let mut name = String::from_utf8_lossy(name).into_owned();
         words.for_each(|word| name.push_str(&String::from_utf8_lossy(word)));
         let name = format!("{}{name}", self.path);
@@ -173,10 +154,10 @@ impl Header {
             let is_this = vector == base || vector.eq_ignore_ascii_case(last);
             u32::try_from(bit).ok().filter(|bit| is_this && (all..size).contains(bit))
         };
-        let mut more: Vec<u32> = recorder.wanted.iter().filter_map(requested).collect();
+        let mut more: Vec<u32> = recorder.requested.iter().filter_map(requested).collect();
         more.sort_unstable();
         more.dedup();
-        recorder.more_beyond(u64::from(size - all) - more.len() as u64);
+        recorder.omit_more(u64::from(size - all) - more.len() as u64);
         for bit in (0..all).chain(more) {
             let name = format!("{base}[{}]", first + step * i64::from(bit));
             self.selection.offer(name, (code.clone(), bit), recorder);
