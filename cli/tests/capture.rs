@@ -243,16 +243,16 @@ fn explains_invalid_maps() {
     check_messages(&[
         (DUMP, &["--map", "STEP0=STEP,DIR0=#1"], 0, ""),
         (DUMP, &["--map", "step0=!a.STEP"], 0, ""),
-        (DUMP, &["--map", "STEP0"], 2, "the channel map: \"STEP0\" is not a pair; write SIGNAL=CHANNEL"),
+        (DUMP, &["--map", "STEP0"], 2, "the channel map: \"STEP0\" is not a pair; use SIGNAL=CHANNEL"),
         (DUMP, &["--map", "STEP16=STEP"], 2, "STEP16 is not a signal; use STEP0 to STEP15"),
-        (DUMP, &["--map", "STEP0=PUL"], 2, "there is no channel PUL; the file has a.STEP, a.D, b.D"),
+        (DUMP, &["--map", "STEP0=PUL"], 2, "there is no channel PUL; use one of a.STEP, a.D, b.D"),
         (
             DUMP,
             &["--map", "STEP0=STEP,DIR0=D"],
             2,
-            "more than one channel is called D; use its number, #0 for the first",
+            "more than one channel is named D; use its number, #0 for the first",
         ),
-        (DUMP, &["--map", "STEP0=STEP,DIR0=STEP"], 2, "channel a.STEP is STEP0 already"),
+        (DUMP, &["--map", "STEP0=STEP,DIR0=STEP"], 2, "channel a.STEP is already STEP0"),
         (DUMP, &["--map", "STEP0=#0,STEP0=#1"], 2, "STEP0 has two channels"),
         (DUMP, &["--map", ""], 2, "no channel has a known signal"),
     ]);
@@ -270,7 +270,7 @@ fn reports_the_readable_part_of_a_truncated_file() {
     );
     let (code, out, err) = stepscope(&["capture", "-"], "a word or two\n");
     assert_eq!((code, out.as_str()), (Some(2), ""));
-    assert!(err.contains("no kind of file that can be read here; it may be "), "{err}");
+    assert!(err.contains("unknown format, beginning with “a word or two”; the nearest are "), "{err}");
     let (code, _, err) = stepscope(&["capture", "-"], "");
     assert!(code == Some(2) && err.contains("the file is empty"), "{err}");
     let (code, _, err) = stepscope(&["capture", "there-is-no-such-file"], "");
