@@ -181,7 +181,7 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         choose_signal(&page, "X_STEP", "STEP0").await?;
         type_into(&page, "Clock", "1000000").await?;
         says(&page, "at 1 MHz").await?;
-        says(&page, "pulses within one are lost").await?;
+        says(&page, "pulses within a cycle are lost").await?;
         type_into(&page, "Clock", "fast").await?;
         page.until("document.getElementById('recording-clock-error').innerText.includes('not a number')")
             .await?;
