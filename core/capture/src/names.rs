@@ -45,6 +45,7 @@ pub(crate) enum Meaning {
     Unknown,
 }
 
+/// Words of each kind of signal.
 const WORDS: [(Kind, &str); 9] = [
     (Kind::Step, "STEP STEPS STP PUL PULS PULSE PULSES PLS PU SCHRITT"),
     (Kind::Dir, "DIR DIRECTION DR SIGN RICHTUNG"),
@@ -59,6 +60,7 @@ const WORDS: [(Kind, &str); 9] = [
 const ACTIVE_LOW: [&str; 3] = ["ENN", "NEN", "NENABLE"];
 /// CW and CCW only if the name has no other words.
 const UP_DOWN: [&str; 3] = ["UP", "DOWN", "DN"];
+/// Words of encoder inputs, and words that mark `A` and `B` as encoder inputs.
 const PHASES: [(Kind, &str); 2] = [(Kind::A, "ENCA PHA PHASEA QA"), (Kind::B, "ENCB PHB PHASEB QB")];
 const ENCODER: [&str; 6] = ["ENC", "ENCODER", "QUAD", "QEI", "PHASE", "PH"];
 /// Words that identify a motor only with a number: `MOTOR1`.
@@ -67,6 +69,7 @@ const NOISE: [&str; 30] = [
     "BIT", "PORT", "OUT", "OUTPUT", "SIGNAL", "SIG", "LINE", "P", "PLUS", "N", "MINUS", "O", "I", "ALL",
     "BOTH", "COMMON", "SHARED",
 ];
+
 /// Finds a word in a list.
 fn find(list: &[(Kind, &'static str)], wanted: &str) -> Option<(&'static str, Kind)> {
     let find =

@@ -52,18 +52,7 @@ pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Detected, String
     if let Some(message) = binary(head) {
         return Err(message.into());
     }
-    // The end of the head may cut off the last line or word.
-    let cut = head
-        .iter()
-        .rposition(|byte| *byte == b'\n')
-        .or_else(|| head.iter().rposition(u8::is_ascii_whitespace));
-    let text = cut.filter(|_| head.len() >= FULL_HEAD).and_then(|end| head.get(..end)).unwrap_or(head);
-    let lines: Vec<&[u8]> = text
-        .split(|byte| *byte == b'\n')
-        .map(<[u8]>::trim_ascii)
-        .filter(|line| !line.is_empty() && !line.starts_with(b"META "))
-        .take(MAX_LINES)
-        .collect();
+    let lines = first_lines(head);
     let Some(first) = lines.first() else { return Ok(Detected::of(Format::SigrokCsv)) };
     if first.starts_with(b"$") {
         return Ok(Detected::of(Format::Vcd));
@@ -91,6 +80,18 @@ pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Detected, String
     of_table.or_else(|| by_rows(if table.is_empty() { &lines } else { table })).ok_or_else(|| {
         format!("unknown format, beginning with {}; {}", quoted(first), nearest::nearest(&lines))
     })
+}
+
+/// The complete lines of the head that are not empty.
+fn first_lines(head: &[u8]) -> Vec<&[u8]> {
+    let last_newline = head.iter().rposition(|byte| *byte == b'\n');
+    let end = last_newline.or_else(|| head.iter().rposition(u8::is_ascii_whitespace));
+    let text = end.filter(|_| head.len() >= FULL_HEAD).and_then(|end| head.get(..end)).unwrap_or(head);
+    text.split(|byte| *byte == b'\n')
+        .map(<[u8]>::trim_ascii)
+        .filter(|line| !line.is_empty() && !line.starts_with(b"META "))
+        .take(MAX_LINES)
+        .collect()
 }
 
 const SCOPE: &str = "voltages of an oscilloscope cannot be read; export digital channels, or use a table such as \
@@ -131,7 +132,7 @@ fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Det
     if names.iter().any(|name| name == "logic") {
         return Ok(Some(Detected::of(Format::SigrokCsv)));
     }
-    if saleae::is_head(&names) {
+    if saleae::is_header(&names, separator) {
         return Ok(Some(Detected::of(Format::SaleaeBytes)));
     }
     if let Some(table) = hex_table::by_head(line, rows, base)? {

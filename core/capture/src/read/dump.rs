@@ -25,7 +25,9 @@ pub(super) struct HexDump {
     next_offsets: [Option<u64>; 3],
     previous_offset: String,
     previous_row: Vec<u8>,
+    /// Bytes of the longest row.
     width: u64,
+    /// The last line was `*`.
     repeats: bool,
     has_ended: bool,
     has_offset: bool,

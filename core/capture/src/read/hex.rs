@@ -157,7 +157,7 @@ impl Reader for HexText {
             Time::Ticks(text) => self.times.tick(text, &mut self.recorder)?,
             Time::Clock(stamp) => {
                 self.has_minutes |= !stamp.has_seconds;
-                self.times.stamp(stamp, line, &mut self.recorder)?
+                self.times.stamp_tick(stamp, line, &mut self.recorder)?
             }
         };
         self.recorder.capture.end = tick;

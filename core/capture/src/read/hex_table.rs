@@ -131,7 +131,7 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     bytes.split(|byte| b" ,;\t".contains(byte)).filter(|word| !word.is_empty())
 }
 
-fn cut(line: &[u8], separator: u8) -> (&[u8], &[u8]) {
+fn split_first_field(line: &[u8], separator: u8) -> (&[u8], &[u8]) {
     let line = line.trim_ascii();
     let end = line.iter().position(|byte| *byte == separator).unwrap_or(line.len());
     let (field, rest) = line.split_at(end);
@@ -140,11 +140,11 @@ fn cut(line: &[u8], separator: u8) -> (&[u8], &[u8]) {
 
 impl Table {
     pub(super) fn split<'l>(&self, line: &'l [u8]) -> (&'l [u8], &'l [u8], &'l [u8]) {
-        let (time, rest) = cut(line, self.separator);
+        let (time, rest) = split_first_field(line, self.separator);
         match self.direction {
             Direction::None => (time, b"", rest),
             Direction::Before => {
-                let (direction, bytes) = cut(rest, self.separator);
+                let (direction, bytes) = split_first_field(rest, self.separator);
                 (time, direction, bytes)
             }
             Direction::After => match rest.iter().rposition(|byte| *byte == self.separator) {
@@ -166,7 +166,7 @@ pub(super) fn by_rows(lines: &[&[u8]]) -> Option<Table> {
     let mut are_pairs = separator != b' ';
     let mut digits = Digits::new();
     for line in lines {
-        let (time, rest) = cut(line, separator);
+        let (time, rest) = split_first_field(line, separator);
         let number = Decimal::parse(time).filter(|number| number.mantissa >= 0)?;
         let places = number.places.max(before.map_or(0, |before| before.places));
         let whole = |number: Decimal| number.with_places(places).map(|number| number.mantissa);
@@ -198,5 +198,5 @@ pub(super) fn by_rows(lines: &[&[u8]]) -> Option<Table> {
 
 /// Evidence for hexadecimal: a letter, `0x`, a leading zero, or several bytes in a row.
 pub(super) fn is_hexadecimal(lines: &[&[u8]], table: Table) -> bool {
-    !table.is_ambiguous || lines.iter().any(|line| cut(line, table.separator).1.len() > 2)
+    !table.is_ambiguous || lines.iter().any(|line| split_first_field(line, table.separator).1.len() > 2)
 }

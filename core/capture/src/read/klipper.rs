@@ -36,14 +36,14 @@ pub(super) struct StepCommands {
 
 struct Stepper {
     oid: u64,
-    moves: Vec<Move>,
+    queued: Vec<QueuedSteps>,
     clock: Option<i128>,
     dir: bool,
 }
 
 /// A `queue_step` whose first step is `interval` ticks after `from`.
 #[derive(Clone, Copy)]
-struct Move {
+struct QueuedSteps {
     from: i64,
     interval: u32,
     add: i32,
@@ -51,7 +51,7 @@ struct Move {
     dir: bool,
 }
 
-impl Move {
+impl QueuedSteps {
     const fn offset(self, step: u64) -> i128 {
         let (step, interval, add) = (step as i128, self.interval as i128, self.add as i128);
         step * interval + add * (step * (step - 1) / 2)
@@ -92,7 +92,7 @@ impl StepCommands {
                 }
                 return None;
             }
-            self.steppers.insert(at, Stepper { oid, moves: Vec::new(), clock: None, dir: false });
+            self.steppers.insert(at, Stepper { oid, queued: Vec::new(), clock: None, dir: false });
         }
         self.steppers.get_mut(at)
     }
@@ -127,7 +127,7 @@ impl StepCommands {
                 self.has_reset = true;
                 self.clock = Some(clock);
                 if let Some(stepper) = self.stepper(oid) {
-                    if stepper.clock.is_some_and(|before| clock < before) && !stepper.moves.is_empty() {
+                    if stepper.clock.is_some_and(|before| clock < before) && !stepper.queued.is_empty() {
                         return Err(format!(
                             "the clock of oid={oid} goes back to {low}, before its last step; use one run per file"
                         ));
@@ -163,7 +163,7 @@ impl StepCommands {
         let Ok(from) = i64::try_from(stepper.clock.unwrap_or(0)) else {
             return Err("the clock exceeds 63 bits; use a shorter part of the log".into());
         };
-        let step = Move { from, interval, add: add.into(), count, dir: stepper.dir };
+        let step = QueuedSteps { from, interval, add: add.into(), count, dir: stepper.dir };
         if count == 0 {
             return Ok(());
         }
@@ -176,15 +176,15 @@ impl StepCommands {
                 text()
             ));
         }
-        if stepper.moves.len() == stepper.moves.capacity() {
-            let more = (stepper.moves.len() / 2).max(64);
+        if stepper.queued.len() == stepper.queued.capacity() {
+            let more = (stepper.queued.len() / 2).max(64);
             stepper
-                .moves
+                .queued
                 .try_reserve_exact(more)
                 .map_err(|_| "not enough memory for more step commands; use a shorter log")?;
         }
         let end = step.step(count.into());
-        stepper.moves.push(step);
+        stepper.queued.push(step);
         stepper.clock = Some(end);
         self.clock = Some(self.clock.map_or(end, |clock| clock.max(end)));
         Ok(())
@@ -210,7 +210,7 @@ impl StepCommands {
             for signal in ["STEP", "DIR"] {
                 self.recorder.channel(&format!("{signal}{motor}"));
             }
-            queues.push(Queue::new(2 * motor as u32, &stepper.moves));
+            queues.push(Queue::new(2 * motor as u32, &stepper.queued));
         }
         let firsts = queues.iter().filter_map(|queue| queue.next.as_ref().map(|next| next.tick));
         let Some(first) = firsts.min() else { return Ok(()) };
@@ -218,7 +218,7 @@ impl StepCommands {
         let start = self
             .steppers
             .iter()
-            .filter_map(|stepper| stepper.moves.first().map(|step| i128::from(step.from)));
+            .filter_map(|stepper| stepper.queued.first().map(|step| i128::from(step.from)));
         let origin = start.min().unwrap_or(0).min(first);
         let mut levels = queues.iter().fold(0, |levels, queue| levels | queue.first_levels());
         self.recorder.levels(0, levels)?;
@@ -238,16 +238,18 @@ impl StepCommands {
     }
 }
 
+/// A change of the signals in `mask` to `levels`.
 struct Edge {
     tick: i128,
     mask: u64,
     levels: u64,
 }
 
+/// The edges of one stepper in order of time: a change of DIR before its step, then rise and fall of STEP.
 struct Queue<'m> {
     bit: u32,
-    moves: core::slice::Iter<'m, Move>,
-    current: Option<Move>,
+    queued: core::slice::Iter<'m, QueuedSteps>,
+    current: Option<QueuedSteps>,
     step: u64,
     previous_step: Option<i128>,
     dir: bool,
@@ -263,12 +265,12 @@ enum Phase {
 }
 
 impl<'m> Queue<'m> {
-    fn new(bit: u32, moves: &'m [Move]) -> Self {
-        let mut moves = moves.iter();
-        let current = moves.next().copied();
+    fn new(bit: u32, queued: &'m [QueuedSteps]) -> Self {
+        let mut queued = queued.iter();
+        let current = queued.next().copied();
         let dir = current.is_some_and(|current| current.dir);
         let mut queue =
-            Self { bit, moves, current, step: 1, previous_step: None, dir, phase: Phase::Dir, next: None };
+            Self { bit, queued, current, step: 1, previous_step: None, dir, phase: Phase::Dir, next: None };
         queue.advance();
         queue
     }
@@ -282,7 +284,7 @@ impl<'m> Queue<'m> {
         if self.step < u64::from(current.count) {
             return Some(current.step(self.step + 1));
         }
-        self.moves.clone().next().map(|next| next.step(1))
+        self.queued.clone().next().map(|next| next.step(1))
     }
 
     fn advance(&mut self) {
@@ -317,7 +319,7 @@ impl<'m> Queue<'m> {
                     if self.step < u64::from(current.count) {
                         self.step += 1;
                     } else {
-                        self.current = self.moves.next().copied();
+                        self.current = self.queued.next().copied();
                         self.step = 1;
                     }
                     self.next = Some(Edge { tick: tick + wide, mask: step, levels: 0 });
@@ -328,10 +330,12 @@ impl<'m> Queue<'m> {
     }
 }
 
+/// Half the interval between two steps, at most the maximum width of a pulse.
 fn half_interval(ticks: i128) -> i128 {
     (ticks / 2).clamp(1, i128::from(MAX_PULSE))
 }
 
+/// Values of a command.
 struct Values {
     list: Vec<(Vec<u8>, i64)>,
 }
@@ -348,6 +352,7 @@ impl Values {
     }
 }
 
+/// Parses `key=value` with a whole number.
 fn value(word: &[u8]) -> Option<(Vec<u8>, i64)> {
     let equals = word.iter().position(|byte| *byte == b'=')?;
     let (key, value) = word.split_at(equals);

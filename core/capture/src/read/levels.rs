@@ -59,7 +59,7 @@ impl LevelsTable {
         }
     }
 
-    /// A first row of numbers is not a head; the first column is then the time.
+    /// Returns false if the line is already a row; the first column is then the time.
     fn read_header(&mut self, line: &[u8]) -> Result<bool, String> {
         let separator = separator(line);
         self.fields.split(line, separator)?;
@@ -69,18 +69,18 @@ impl LevelsTable {
             names.pop();
         }
         let layout = Layout::of(&names);
-        let has_head = layout.is_some();
+        let has_header = layout.is_some();
         let Layout { time, unit, others } = layout.unwrap_or(Layout {
             time: 0,
             unit: if self.whole_times { TimeUnit::Cycles } else { TimeUnit::Seconds(0) },
             others: Vec::new(),
         });
-        let unit = if has_head && self.whole_times && !TimeUnit::is_stated(names.get(time)) {
+        let unit = if has_header && self.whole_times && !TimeUnit::is_stated(names.get(time)) {
             TimeUnit::Cycles
         } else {
             unit
         };
-        if !has_head {
+        if !has_header {
             self.recorder.note(
                 "the table has no column names: the first column is read as the time, all others as channels",
             );
@@ -88,17 +88,17 @@ impl LevelsTable {
         self.columns = Some(Columns {
             separator,
             times: Times::new(unit),
-            list: self.columns_of(&names, has_head, time, &others)?,
+            list: self.columns_of(&names, has_header, time, &others)?,
             is_first_row: true,
         });
-        Ok(has_head)
+        Ok(has_header)
     }
 
     /// Assigns a bit to each column of levels, as far as there are bits.
     fn columns_of(
         &mut self,
         names: &[String],
-        has_head: bool,
+        has_header: bool,
         time: usize,
         others: &[usize],
     ) -> Result<Vec<Column>, String> {
@@ -115,7 +115,7 @@ impl LevelsTable {
                 list.push(if at == time { Column::Time } else { Column::Other });
                 continue;
             }
-            let name = if has_head { name.clone() } else { format!("D{bit}") };
+            let name = if has_header { name.clone() } else { format!("D{bit}") };
             let numbered = format!("Channel {bit}");
             channels.push(if name.is_empty() { numbered } else { name.clone() });
             list.push(Column::Level(None, name));

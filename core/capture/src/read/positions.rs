@@ -23,8 +23,15 @@ pub(super) struct Positions {
     whole_times: bool,
     fields: Fields,
     times: Times,
-    /// Separator, columns of time and position; `None` before the first line.
-    columns: Option<(u8, usize, usize)>,
+    /// `None` before the first line.
+    columns: Option<Columns>,
+}
+
+#[derive(Clone, Copy)]
+struct Columns {
+    separator: u8,
+    time: usize,
+    position: usize,
 }
 
 impl Positions {
@@ -33,7 +40,8 @@ impl Positions {
         Self { recorder, whole_times, fields: Fields::new(), times, columns: None }
     }
 
-    fn begin(&mut self, line: &[u8]) -> Result<bool, String> {
+    /// Returns false if the line is already a row.
+    fn read_header(&mut self, line: &[u8]) -> Result<bool, String> {
         let separator = separator(line);
         self.fields.split(line, separator)?;
         let names = column_names(&self.fields, separator);
@@ -41,19 +49,19 @@ impl Positions {
             if self.whole_times {
                 self.times = Times::new(TimeUnit::Cycles);
             }
-            self.columns = Some((separator, 0, 1));
+            self.columns = Some(Columns { separator, time: 0, position: 1 });
             return Ok(false);
         };
-        let at = position_column(&names, time).unwrap_or(usize::from(time == 0));
-        names.get(at).map_or(Ok(()), |name| check_unit(name))?;
+        let position = position_column(&names, time).unwrap_or(usize::from(time == 0));
+        names.get(position).map_or(Ok(()), |name| check_unit(name))?;
         let is_stated = !self.whole_times || TimeUnit::is_stated(names.get(time));
         self.times = Times::new(if is_stated { unit } else { TimeUnit::Cycles });
-        self.columns = Some((separator, time, at));
+        self.columns = Some(Columns { separator, time, position });
         let mut others = Names::new();
         names
             .iter()
             .enumerate()
-            .filter(|(column, _)| *column != time && *column != at)
+            .filter(|(column, _)| *column != time && *column != position)
             .for_each(|(_, name)| others.add(name));
         self.recorder.note_skipped("columns", &others);
         Ok(true)
@@ -72,13 +80,13 @@ impl Reader for Positions {
         if line.is_empty() || is_comment(line) {
             return Ok(());
         }
-        if self.columns.is_none() && self.begin(line)? {
+        if self.columns.is_none() && self.read_header(line)? {
             return Ok(());
         }
-        let (separator, time, at) = self.columns.unwrap_or((b',', 0, 1));
-        self.fields.split(line, separator)?;
-        let tick = self.times.tick(self.fields.get(time), &mut self.recorder)?;
-        let field = self.fields.get(at);
+        let Some(columns) = self.columns else { return Ok(()) };
+        self.fields.split(line, columns.separator)?;
+        let tick = self.times.tick(self.fields.get(columns.time), &mut self.recorder)?;
+        let field = self.fields.get(columns.position);
         let position = Decimal::parse(field)
             .ok_or_else(|| format!("{} is not a position; use a whole number of steps", quoted(field)))?;
         let position = position.whole().and_then(|steps| i64::try_from(steps).ok()).ok_or_else(|| {

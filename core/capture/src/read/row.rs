@@ -56,6 +56,7 @@ struct Text<'r> {
     is_marked: bool,
 }
 
+/// Possible texts after the bytes of a row, each with the end of the bytes.
 fn text_candidates(row: &[u8]) -> impl Iterator<Item = (usize, Text<'_>)> {
     let marked = |open: u8, close: u8, min_gap: usize| {
         let body = row.strip_suffix(&[close])?;

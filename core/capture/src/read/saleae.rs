@@ -19,7 +19,7 @@ const UNNAMED: &str = "serial";
 
 pub(super) struct DecodedBytes {
     recorder: Recorder,
-    columns: Option<(u8, Columns)>,
+    columns: Option<Columns>,
     fields: Fields,
     times: Times,
     others: Names,
@@ -27,6 +27,7 @@ pub(super) struct DecodedBytes {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Columns {
+    separator: u8,
     name: Option<usize>,
     kind: Option<usize>,
     time: usize,
@@ -36,7 +37,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn find(names: &[String]) -> Option<Self> {
+    fn find(names: &[String], separator: u8) -> Option<Self> {
         let names: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
         let at = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&name.as_str()));
         let time =
@@ -49,12 +50,12 @@ impl Columns {
             return None;
         }
         let unit = names.get(time).and_then(|name| TimeUnit::of_column(name)).unwrap_or(TimeUnit::Seconds(0));
-        Some(Self { name, kind, time, unit, value, error })
+        Some(Self { separator, name, kind, time, unit, value, error })
     }
 }
 
-pub(super) fn is_head(names: &[String]) -> bool {
-    Columns::find(names).is_some()
+pub(super) fn is_header(names: &[String], separator: u8) -> bool {
+    Columns::find(names, separator).is_some()
 }
 
 impl DecodedBytes {
@@ -63,14 +64,14 @@ impl DecodedBytes {
         Self { recorder, columns: None, fields: Fields::new(), times, others: Names::new() }
     }
 
-    fn head(&mut self, line: &[u8]) -> Result<(), String> {
+    fn read_header(&mut self, line: &[u8]) -> Result<(), String> {
         let separator = separator(line);
         self.fields.split(line, separator)?;
-        let columns = Columns::find(&self.fields.names()).ok_or(
+        let columns = Columns::find(&self.fields.names(), separator).ok_or(
             "the header has no time or no value; use columns such as name,type,start_time,duration,data",
         )?;
         self.times = Times::new(columns.unit);
-        self.columns = Some((separator, columns));
+        self.columns = Some(columns);
         Ok(())
     }
 
@@ -85,8 +86,8 @@ impl Reader for DecodedBytes {
         if line.trim_ascii().is_empty() {
             return Ok(());
         }
-        let Some((separator, columns)) = self.columns.clone() else { return self.head(line) };
-        self.fields.split(line, separator)?;
+        let Some(columns) = self.columns.clone() else { return self.read_header(line) };
+        self.fields.split(line, columns.separator)?;
         if self.fields.len() <= columns.time.max(columns.value) {
             return Err(format!(
                 "{} has {} fields, fewer than the header; export again, the row is incomplete",

@@ -72,7 +72,7 @@ impl TimeUnit {
                     "nanos" => Some(Self::Seconds(9)),
                     word => Self::parse(word),
                 };
-                unit.or_else(|| camel(name.trim())).map(|unit| (unit, true))
+                unit.or_else(|| camel_case_unit(name.trim())).map(|unit| (unit, true))
             }
             [.., word] if words.iter().any(is_time) => match Self::parse(word) {
                 Some(unit) => Some((unit, true)),
@@ -85,7 +85,8 @@ impl TimeUnit {
 
 const TIME_WORDS: [&str; 7] = ["t", "time", "timestamp", "ts", "start", "elapsed", "uptime"];
 
-fn camel(name: &str) -> Option<TimeUnit> {
+/// The unit of a name such as `timeUs`.
+fn camel_case_unit(name: &str) -> Option<TimeUnit> {
     let unit = name.find(|letter: char| letter.is_uppercase()).filter(|at| *at > 0)?;
     let (time, unit) = name.split_at(unit);
     TIME_WORDS.contains(&time).then(|| TimeUnit::parse(unit)).flatten()
@@ -130,7 +131,7 @@ impl Times {
                 })?;
                 Decimal { mantissa, places: 0 }
             }
-            (None, _) => return self.clock(text, recorder),
+            (None, _) => return self.clock_tick(text, recorder),
         };
         self.tick_of(time, text, recorder)
     }
@@ -152,24 +153,27 @@ impl Times {
             let is_epoch = self.unit != TimeUnit::Cycles
                 && time.rounded(0).is_some_and(|seconds| EPOCH_S.contains(&seconds.mantissa));
             if time.mantissa < 0 || is_epoch {
-                self.begin_at(time, text);
+                self.set_origin(time, text);
             }
         }
         let since = time.minus(self.origin).ok_or_else(too_long)?;
-        let tick =
-            if since.mantissa < 0 { None } else { Some(self.fitted(since, recorder).ok_or_else(too_long)?) };
+        let tick = if since.mantissa < 0 {
+            None
+        } else {
+            Some(self.refined_tick(since, recorder).ok_or_else(too_long)?)
+        };
         tick.filter(|tick| *tick >= recorder.capture.end).ok_or_else(|| {
             format!("the time {} is before the time of the previous row; sort the rows by time", quoted(text))
         })
     }
 
-    fn begin_at(&mut self, first: Decimal, text: &[u8]) {
+    fn set_origin(&mut self, first: Decimal, text: &[u8]) {
         self.shifted_by = Some(quoted(text));
         self.origin = first;
     }
 
-    /// Refines the time base as far as this time needs, or as fits.
-    fn fitted(&mut self, since: Decimal, recorder: &mut Recorder) -> Option<u64> {
+    /// The tick of a time. Refines the time base first if the time has more places and the ticks still fit.
+    fn refined_tick(&mut self, since: Decimal, recorder: &mut Recorder) -> Option<u64> {
         let base = self.places?;
         let needed = since.with_places(base).map_or(since.places.max(base), |since| since.places);
         for places in (base.min(MIN_PLACES)..=needed.min(MAX_PLACES)).rev() {
@@ -192,17 +196,17 @@ impl Times {
         None
     }
 
-    fn clock(&mut self, text: &[u8], recorder: &mut Recorder) -> Result<u64, String> {
+    fn clock_tick(&mut self, text: &[u8], recorder: &mut Recorder) -> Result<u64, String> {
         let stamp = Stamp::parse(text)
             .filter(|stamp| self.unit == TimeUnit::Seconds(0) && stamp.length == text.len())
             .ok_or_else(|| {
                 format!("{} is not a time; use a number such as 0.00125 or 1.25e-3", quoted(text))
             })?;
-        self.stamp(stamp, text, recorder)
+        self.stamp_tick(stamp, text, recorder)
     }
 
     /// Without dates, a time that falls by more than half a day belongs to the next day.
-    pub(super) fn stamp(
+    pub(super) fn stamp_tick(
         &mut self,
         stamp: Stamp,
         text: &[u8],
@@ -232,7 +236,7 @@ impl Times {
             time.mantissa += days.unwrap_or(0);
         }
         if self.places.is_none() {
-            self.begin_at(time, text);
+            self.set_origin(time, text);
         }
         self.tick_of(time, text, recorder)
     }

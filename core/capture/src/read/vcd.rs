@@ -67,7 +67,7 @@ impl Vcd {
         }
     }
 
-    fn begin(&mut self) {
+    fn begin_body(&mut self) {
         if !self.is_in_body {
             self.is_in_body = true;
             self.header.select(&mut self.variables, &mut self.recorder);
@@ -75,12 +75,12 @@ impl Vcd {
     }
 
     fn token(&mut self, word: &[u8]) -> Result<(), String> {
-        let (&kind, rest) = word.split_first().unwrap_or((&b' ', &[]));
-        if kind == b'$' {
+        let (&first, rest) = word.split_first().unwrap_or((&b' ', &[]));
+        if first == b'$' {
             return self.keyword(word);
         }
-        self.begin();
-        if let Some(value) = Value::parse(kind) {
+        self.begin_body();
+        if let Some(value) = Value::parse(first) {
             if rest.is_empty() {
                 self.expected = Expected::Scalar(value);
             } else {
@@ -88,7 +88,7 @@ impl Vcd {
             }
             return Ok(());
         }
-        match kind {
+        match first {
             b'#' => self.time(rest),
             b'b' | b'B' => {
                 self.variables.set_value(rest).map_err(|letter| {
@@ -122,9 +122,9 @@ impl Vcd {
     fn keyword(&mut self, word: &[u8]) -> Result<(), String> {
         self.expected = Expected::Token;
         match word {
-            b"$dumpvars" | b"$dumpall" | b"$dumpon" => self.begin(),
+            b"$dumpvars" | b"$dumpall" | b"$dumpon" => self.begin_body(),
             b"$dumpoff" => {
-                self.begin();
+                self.begin_body();
                 self.is_off = true;
                 self.off_count += 1;
             }
@@ -151,7 +151,7 @@ impl Vcd {
         }
         self.expected = Expected::Token;
         match keyword {
-            Keyword::EndDefinitions => self.begin(),
+            Keyword::EndDefinitions => self.begin_body(),
             Keyword::Timescale => {
                 let timescale = self.header.timescale()?;
                 if let Some(first) = self.recorder.capture.timebase.replace(timescale)
@@ -254,7 +254,7 @@ impl Reader for Vcd {
 
     fn finish(mut self) -> (Capture, Result<(), String>) {
         let has_body = self.is_in_body;
-        self.begin();
+        self.begin_body();
         let mut missing = match self.expected {
             Expected::Command(keyword) => Err(format!(
                 "the file ends within {}; it is truncated: record or copy it again",

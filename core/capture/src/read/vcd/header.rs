@@ -144,8 +144,13 @@ impl Header {
             self.selection.offer(name, (code, 0), recorder);
             return Ok(());
         }
-        let (base, first, step) = bits(&name, size);
-        // For a wide vector, only as many bits as can be read, and the requested ones.
+        self.offer_bits(&name, size, &code, recorder);
+        Ok(())
+    }
+
+    /// Offers the bits of a vector: as many as can be read, and requested ones beyond them.
+    fn offer_bits(&mut self, name: &str, size: u32, code: &[u8], recorder: &mut Recorder) {
+        let (base, first, step) = bits(name, size);
         let all = size.min(MAX_CHANNELS as u32);
         let last = base.rsplit('.').next().unwrap_or_default();
         let requested = |wanted: &String| {
@@ -160,9 +165,8 @@ impl Header {
         recorder.omit_more(u64::from(size - all) - more.len() as u64);
         for bit in (0..all).chain(more) {
             let name = format!("{base}[{}]", first + step * i64::from(bit));
-            self.selection.offer(name, (code.clone(), bit), recorder);
+            self.selection.offer(name, (code.into(), bit), recorder);
         }
-        Ok(())
     }
 
     pub(super) fn select(&mut self, variables: &mut Variables, recorder: &mut Recorder) {
