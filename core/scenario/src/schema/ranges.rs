@@ -42,14 +42,14 @@ fn check_field(field: &Field, value: &dyn ToParts, validator: &mut Validator) {
                 && !(min..=max).contains(&given)
             {
                 let (given, min, max) = (given as f64, min as f64, max as f64);
-                validator.add("", ValueError::Range { given, min: min, max: max, unit: field.unit });
+                validator.add("", ValueError::Range { given, min, max, unit: field.unit });
             }
         }
         Limit::Number(min, max) => {
             if let Parts::Number(given) = value.parts()
                 && !(min..=max).contains(&given)
             {
-                validator.add("", ValueError::Range { given, min: min, max: max, unit: field.unit });
+                validator.add("", ValueError::Range { given, min, max, unit: field.unit });
             }
         }
         Limit::Length(min, max, of) => {
