@@ -51,7 +51,6 @@ pub struct Derived {
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedController {
     pub tick_s: f64,
-    /// Maximum speed that the bus allows.
     pub limit_steps_s: f64,
     pub ticks: u64,
     pub axes: Vec<DerivedAxis>,

@@ -57,7 +57,6 @@ pub struct PanelSignal {
     controller: u8,
     source: PanelValue,
     pub name: String,
-    /// Width, 1 to 16.
     pub bits: u32,
     pub value: u64,
 }

@@ -9,7 +9,6 @@ use core::fmt::{self, Write};
 use stepscope_motion::round_half_up;
 use stepscope_motion::step_tables::{Entry, EntryFormat, Stored};
 
-/// Numbers per line of an array.
 const NUMBERS_PER_LINE: usize = 8;
 /// Maximum bytes of an array. avr-gcc has signed 16-bit sizes, and C99 requires no more.
 const MAX_AVR_BYTES: u64 = 32_767;
@@ -18,7 +17,7 @@ const MAX_C_BYTES: u64 = 65_535;
 const NEAR_BYTES: u64 = 65_536;
 /// Prefixes that C reserves for functions of its headers (C11 7.31), if a lowercase letter follows.
 const RESERVED_FUNCTIONS: [&str; 6] = ["is", "to", "str", "mem", "wcs", "e"];
-/// Prefixes that C reserves for types and uppercase macros; ``e` followed by a digit is reserved by `errno.h`.
+/// Prefixes that C reserves for types and uppercase macros; `errno.h` also reserves `e` with a digit.
 const RESERVED_TYPES: [&str; 13] =
     ["int", "uint", "sig", "lc_", "fe_", "pri", "scn", "atomic_", "memory_", "cnd_", "mtx_", "thrd_", "tss_"];
 

@@ -34,7 +34,6 @@ pub struct Request {
     pub steps: i64,
     pub duration_s: f64,
     pub ramp_s: f64,
-    /// For [`CosineMethod::Sliced`].
     pub slice_s: f64,
     pub sigmoid_range: f64,
     pub time_constants: f64,
@@ -220,7 +219,6 @@ pub struct Cost {
     pub peaks: Peaks,
     /// End of the move less t_i, in s; negative is early.
     pub time_error_s: f64,
-    /// The same in parts of t_i.
     pub time_error: f64,
     /// Time of the last step in s, not rounded to a clock.
     pub last_step_s: f64,

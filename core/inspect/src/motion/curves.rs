@@ -9,7 +9,6 @@ use stepscope_peripheral::trace::Step;
 const MAX_INTERVALS: usize = 256;
 /// Up to this number, a line follows all intervals of a column; for more it connects minimum and maximum.
 const MAX_FOLLOWED: usize = 32;
-/// Points per column of a line.
 const POINTS: usize = 4;
 
 /// Minimum and maximum per column; NaN where there is none.

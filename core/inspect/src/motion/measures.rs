@@ -64,7 +64,6 @@ pub struct Measures {
     pub steps: CurveMetrics,
     /// Quantization to ticks, queue and link: scheduled steps compared with pulses.
     pub ticks: CurveMetrics,
-    /// Both: the ideal curve compared with pulses.
     pub pulses: CurveMetrics,
     /// Scheduled steps compared with ideal times.
     pub step_errors: PulseErrors,
@@ -108,7 +107,6 @@ pub struct Duration {
     pub plan_error_s: Option<f64>,
     pub last_due_s: Option<f64>,
     pub last_pulse_s: Option<f64>,
-    /// Last pulse less last scheduled step.
     pub end_error_s: Option<f64>,
 }
 

@@ -17,9 +17,7 @@ const GUESSES: [f64; 4] = [0.4, 0.0, 0.7, 1.0];
 /// Where vertices may be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freedom {
-    /// On the sine.
     OnCurve,
-    /// Anywhere.
     Free,
 }
 

@@ -29,14 +29,9 @@ pub struct Field {
 /// The CRC of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CrcCheck {
-    /// Raw packets have no CRC.
     None,
-    /// The frame is incomplete.
     Missing,
-    Compared {
-        found: u32,
-        expected: u32,
-    },
+    Compared { found: u32, expected: u32 },
 }
 
 /// The fields of a packet, in ascending order of bytes.
@@ -94,7 +89,7 @@ impl FrameHead {
     }
 }
 
-/// The frame within its row, without_crc delimiters.
+/// The frame within its row, without delimiters.
 fn last_frame(bytes: &[u8]) -> Range<usize> {
     let end = bytes.len() - usize::from(bytes.last() == Some(&DELIMITER));
     let before = bytes.get(..end).and_then(|bytes| bytes.iter().rposition(|&byte| byte == DELIMITER));
@@ -157,10 +152,9 @@ pub(crate) fn decoded(bytes: &[u8]) -> (Vec<u8>, bool) {
     (decoded, is_complete)
 }
 
-/// A frame without_crc COBS.
+/// A frame without COBS.
 struct Content {
     decoded: Vec<u8>,
-    /// Position of each decoded byte on the line, and the end.
     offsets: Vec<usize>,
     /// Bytes that COBS added, with their positions.
     overhead: Vec<(usize, u8)>,
@@ -293,7 +287,7 @@ fn field(name: impl Into<Cow<'static, str>>, bytes: Range<usize>, value: impl In
 fn cobs_to_text(code: u8) -> String {
     match code {
         1..=254 => format!("{} bytes to the next zero or the end", code - 1),
-        _ => "254 bytes without_crc a zero".into(),
+        _ => "254 bytes without a zero".into(),
     }
 }
 

@@ -21,7 +21,6 @@ pub struct Span {
     pub texts: Vec<String>,
     pub bad: bool,
     pub packet: Option<usize>,
-    /// Cycle in which a received bit is sampled.
     pub sample: Option<u64>,
 }
 

@@ -74,7 +74,6 @@ pub struct RecordedReply<'a> {
     pub start: Instant,
     pub end: Instant,
     pub bytes: &'a [u8],
-    /// `None` if the bytes are not a valid reply.
     pub reply: Option<Reply>,
 }
 

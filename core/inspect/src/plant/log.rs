@@ -16,7 +16,6 @@ pub const SUPPLY: [&str; 3] = ["bus_v", "load_a", "sensor_a"];
 /// Values of each motor: full steps, full steps/s, phase currents in A, encoder code.
 pub const MOTOR: [&str; 7] = ["command", "rotor", "error", "speed", "phase_a_a", "phase_b_a", "encoder"];
 
-/// Maximum bins.
 const BINS: usize = 8192;
 /// Minimum bins of a window; with fewer, its points are computed again.
 const MIN_BINS: u64 = 512;
@@ -133,7 +132,6 @@ impl PlantLog {
         self.latest.len()
     }
 
-    /// Merges pairs of bins.
     fn merge_bins(&mut self) {
         let values = self.values();
         for (bins, take) in [(&mut self.min, f64::min as fn(f64, f64) -> f64), (&mut self.max, f64::max)] {
@@ -208,7 +206,6 @@ impl PlantLog {
     }
 }
 
-/// Joins points or bins to columns.
 struct Columns<'a> {
     bands: &'a mut [Band],
     per_column: u64,

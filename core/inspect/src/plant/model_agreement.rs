@@ -77,7 +77,6 @@ pub struct Agreement {
     pub plant: String,
     /// Whether curve and plant agree; `None` where the run does not decide it.
     pub agrees: Option<bool>,
-    /// Why they disagree, or why the run does not decide it.
     pub why: Option<String>,
 }
 

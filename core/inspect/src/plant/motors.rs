@@ -100,7 +100,7 @@ pub const MOTORS: &[MotorSheet] = &[
     MotorSheet {
         id: "nema-8",
         name: "NEMA 8, 30 mm long: 0.6 A, 18 mN·m",
-        source: "no data sheet: figures of the with_default_friction size",
+        source: "no data sheet: typical values",
         typical: ALL,
         ..with_default_friction([0.6, 6.5, 1.7], [18.0, 2.0, 0.0])
     },

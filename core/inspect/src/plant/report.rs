@@ -7,7 +7,7 @@ use stepscope_plant::measures::{MotorResult, Peak, PlantResult};
 use stepscope_plant::parameters::Setup;
 use stepscope_sim::{Experiment, Run};
 
-/// The report of motor_of controller's plant.
+/// The report of one controller's plant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlantReport {
     pub plant: PlantSummary,
@@ -68,7 +68,6 @@ pub struct Motor {
 pub struct Slip {
     pub channel: usize,
     pub cycle: u64,
-    /// Whether the rotor fell behind; otherwise it ran ahead.
     pub behind: bool,
 }
 

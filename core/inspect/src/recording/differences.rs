@@ -40,12 +40,11 @@ pub struct Difference {
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Differences {
     pub listed: Vec<Difference>,
-    /// Including those not listed.
     pub count: usize,
 }
 
 impl Differences {
-    /// A step that is deviation by exactly `within` is not late.
+    /// A step that is off by exactly `within` is not late.
     pub fn of(alignment: &Alignment<'_>, within: Tolerance) -> Self {
         let mut found = Self::default();
         let (mut model, mut recorded, mut index) = (0, 0, 0);
@@ -139,6 +138,8 @@ impl Difference {
 
     /// Such as "1 step missing after step 1999, at 225.6 ms".
     pub fn to_text(&self, unit: Kind) -> String {
+        use DifferenceKind::{Direction, Extra, Late, Missing, Value};
+
         let one = unit.singular();
         let counted =
             if self.count == 1 { format!("1 {one}") } else { format!("{} {}", self.count, unit.plural()) };
@@ -148,11 +149,11 @@ impl Difference {
         let size = format!("{:.3} us", libm::fabs(late_s) * 1e6);
         let early = if late_s < 0.0 { "early" } else { "late" };
         match self.kind {
-            DifferenceKind::Missing if step == 0 => {
+            Missing if step == 0 => {
                 format!("{counted} missing before the first recorded {one}, at {at}")
             }
-            DifferenceKind::Missing => format!("{counted} missing after {one} {}, at {at}", step - 1),
-            DifferenceKind::Extra => {
+            Missing => format!("{counted} missing after {one} {}, at {at}", step - 1),
+            Extra => {
                 let extra =
                     format!("{} extra {}", self.count, if self.count == 1 { one } else { unit.plural() });
                 match self.step {
@@ -160,21 +161,21 @@ impl Difference {
                     None => format!("{extra} before {one} 0, at {at}"),
                 }
             }
-            DifferenceKind::Direction if self.count == 1 => {
+            Direction if self.count == 1 => {
                 format!("{one} {step} in the wrong direction, at {at}")
             }
-            DifferenceKind::Direction => {
+            Direction => {
                 format!("{counted} in the wrong direction from {one} {step}, at {at}")
             }
-            DifferenceKind::Value if self.count == 1 => {
+            Value if self.count == 1 => {
                 let value =
                     |value: Option<u8>| value.map_or_else(String::new, |value| format!("{value:02x}"));
                 let (own, planned) = (value(self.recorded_value), value(self.planned_value));
                 format!("{one} {step} is {own} instead of {planned}, at {at}")
             }
-            DifferenceKind::Value => format!("{counted} with another value from {one} {step}, at {at}"),
-            DifferenceKind::Late if self.count == 1 => format!("{one} {step} is {size} {early}, at {at}"),
-            DifferenceKind::Late => {
+            Value => format!("{counted} with another value from {one} {step}, at {at}"),
+            Late if self.count == 1 => format!("{one} {step} is {size} {early}, at {at}"),
+            Late => {
                 format!("{counted} off by up to {size} ({early}) from {one} {step}, at {at}")
             }
         }

@@ -87,7 +87,6 @@ fn max_of(known: Option<f64>, value: f64) -> Option<f64> {
     Some(known.map_or(value, |known| libm::fmax(known, value)))
 }
 
-/// The maximum acceleration of a stream of steps.
 struct Acceleration {
     hz: f64,
     steps: VecDeque<Step>,

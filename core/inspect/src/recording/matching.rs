@@ -24,7 +24,6 @@ pub struct Run {
     pub model: usize,
     pub recorded: usize,
     pub count: usize,
-    /// Matched steps before this run.
     before: usize,
 }
 

@@ -75,7 +75,6 @@ pub enum OpenError {
     /// No steps, and a line cannot be decoded: the reason and remedies.
     NoRate(String, Vec<Remedy>),
     TooLate(TooLate),
-    /// Position rows need more than this number of steps.
     TooManySteps(u64),
 }
 

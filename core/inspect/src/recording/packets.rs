@@ -122,7 +122,6 @@ impl<'a> Line<'a> {
         }));
     }
 
-    /// Calls `take` for each packet, in order.
     pub(super) fn each(&self, mut take: impl FnMut(Found)) {
         let (mut deframer, mut outcome) = (Deframer::default(), None);
         let (mut bytes, mut start_cycle, mut last) = (Vec::new(), 0, 0);

@@ -5,21 +5,9 @@ use alloc::string::String;
 /// A setting that may solve a problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// Count both edges of STEP, or DEDGE in the map.
-    BothEdges {
-        motor: u8,
-        channel: String,
-    },
-    /// Count the other edge of STEP: map it inverted or not.
-    OtherEdge {
-        motor: u8,
-        channel: String,
-        inverted: bool,
-    },
-    InvertLine {
-        line: &'static str,
-        inverted: bool,
-    },
+    BothEdges { motor: u8, channel: String },
+    OtherEdge { motor: u8, channel: String, inverted: bool },
+    InvertLine { line: &'static str, inverted: bool },
     ChooseLine,
     Format(String),
     Baud,

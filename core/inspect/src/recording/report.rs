@@ -32,7 +32,6 @@ pub struct LineReport {
     pub measured: Option<Measured>,
     pub baud: u32,
     pub format: String,
-    /// Why it was not decoded.
     pub problem: Option<String>,
     /// Why the result may be wrong.
     pub hint: Option<String>,
@@ -120,7 +119,6 @@ pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl 
     })
 }
 
-/// The default format.
 const EIGHT_N_ONE: &str = "8N1";
 
 /// Why no rate was found, and what helps.

@@ -53,9 +53,7 @@ pub struct Reproduction {
 pub enum NotReproducible {
     NoSteps,
     NoBytes,
-    /// Steps of a channel that no segments can make.
     Channel(u8, Cause),
-    /// The clock in Hz is too slow for the bit rate.
     FewCycles(u32, u32),
     /// The first problem of the scenario.
     Invalid(Problem),

@@ -28,7 +28,6 @@ const MAX_LINE: usize = 1000;
 /// A line of the file that is invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BadLine {
-    /// From 1; 0 for an empty file.
     pub line: u64,
     pub problem: String,
 }

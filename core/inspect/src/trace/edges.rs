@@ -8,7 +8,6 @@ use serde::Serialize;
 use stepscope_peripheral::signal::{Levels, Record};
 use stepscope_peripheral::{trace::levels_at, units::Instant};
 
-/// Number of signals of a controller.
 const SIGNALS: u32 = 36;
 
 /// One edge.
@@ -34,7 +33,6 @@ pub struct Pulse {
     /// Cycle of the edge that began it; `None` for the initial level.
     pub begin: Option<u64>,
     pub end: Option<u64>,
-    /// Cycle of the edge after its end.
     pub next: Option<u64>,
 }
 

@@ -98,7 +98,6 @@ fn high_half(digest: &Digest) -> u32 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
     pub records: u64,
-    /// Edges of single signals up to here.
     pub edges: u64,
     pub cycle: Instant,
 }

@@ -50,9 +50,7 @@ impl Recording {
 /// The run exceeds [`MAX_RECORDS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TooLong {
-    /// Number of planned steps.
     Steps(u64),
-    /// Counted while it ran.
     Edges,
 }
 

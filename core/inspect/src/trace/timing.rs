@@ -31,7 +31,6 @@ use stepscope_peripheral::signal::{Levels, MAX_CHANNELS, Record, Sink};
 use stepscope_peripheral::units::{Cycles, Instant};
 use stepscope_scenario::TimingRules;
 
-/// EN, STEP and DIR.
 const WATCHED: u64 = Levels::EN | 0xFFFF_FFFF;
 
 /// A minimum time that a driver requires.

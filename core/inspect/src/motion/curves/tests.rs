@@ -50,7 +50,7 @@ const MOTIONS: &[&str] = &[
 const SEGMENTS: &str = r#"{"segments":{"channels":[{"segments":[{"steps":{"count":10}},{"dwell":{"length_q16":5242880000}},
     {"steps":{"count":40,"interval_q16":524288000,"add_q16":-8000000,"dir":0}},{"dwell":{"length_q16":9000000000}}]}]}}"#;
 
-/// From the extremes_of down to a part of a tick, in parts of the length of the motion.
+/// From the whole motion down to a part of a tick, in parts of its length.
 const WINDOWS: &[(f64, f64, usize)] =
     &[(-0.05, 1.1, 37), (0.2, 0.45, 64), (0.5, 0.5003, 9), (-0.1, -0.05, 3)];
 

@@ -24,7 +24,6 @@ pub struct CurveMetrics {
     pub area_steps_s: f64,
     /// Integral of second - first, in steps times s; 0 where only rounding is left.
     pub area_difference_steps_s: f64,
-    /// Number of samples of the sum of squares.
     pub points: u32,
     pub sum_of_squares_steps2: f64,
     pub euclidean_steps: f64,

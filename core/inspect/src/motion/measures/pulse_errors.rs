@@ -91,7 +91,6 @@ fn distance(plan: &AxisPlan, from_s: f64, to_s: f64, hz: f64) -> f64 {
     plan.position(to_s - 1.0 / hz) - plan.position(from_s - 1.0 / hz)
 }
 
-/// Consecutive steps in one direction.
 struct Run {
     first: usize,
     cycle: u64,

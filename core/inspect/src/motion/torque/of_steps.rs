@@ -141,7 +141,6 @@ fn jump(machine: &Machine, steps: &[Step], clock_hz: u32) -> f64 {
     max_jump
 }
 
-/// The steps before or after a step.
 struct Side {
     /// To the next step; infinite where there is none.
     interval_s: f64,

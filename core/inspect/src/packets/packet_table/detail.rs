@@ -28,7 +28,6 @@ pub struct Detail {
     /// From the end of the frame to the rise of DE; `None` for recorded replies.
     pub drive_cycles: Option<u64>,
     pub turnaround_cycles: Option<u64>,
-    /// Row of the frame that it replies to.
     pub answers: Option<usize>,
 }
 

@@ -75,7 +75,7 @@ impl LoadedCapture {
             let baud = options.baud.unwrap_or_else(|| estimated_baud(&all, clock_hz));
             if options.baud.is_none() {
                 self.notes.push(Note::from(format!(
-                    "the file does not give the bit rate; {baud} baud is estimated from the times of its bytes; set the actual rate"
+                    "the file has no bit rate; {baud} baud is estimated from the times of its bytes; set the actual rate"
                 )));
             }
             let lines = self.lines_of(capture, map).into_iter();
@@ -91,7 +91,6 @@ impl LoadedCapture {
         Ok(report)
     }
 
-    /// The bytes of each mapped line.
     pub(super) fn lines_of<'c>(
         &mut self,
         capture: &'c Capture,

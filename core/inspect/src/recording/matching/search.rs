@@ -7,7 +7,6 @@ use alloc::{rc::Rc, vec, vec::Vec};
 
 pub(super) type Pair = (usize, usize);
 
-/// Maximum hypotheses.
 const WIDTH: usize = 16;
 /// Maximum extra cost of a hypothesis.
 const MARGIN: f64 = 2.5;
@@ -319,7 +318,6 @@ impl<'a> Search<'a> {
             || self.model.values.get(model) != self.recorded.values.get(recorded)
     }
 
-    /// Minimum cost of the remaining steps.
     fn remaining_cost(&self, hypothesis: &Hypothesis) -> f64 {
         let model = self.model.steps.len().saturating_sub(hypothesis.model);
         gap(model.abs_diff(self.recorded.steps.len().saturating_sub(hypothesis.recorded)))
