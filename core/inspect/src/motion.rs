@@ -1,4 +1,11 @@
 //! The ideal motion compared with its pulses: curves, errors, spectra, distortion and torque.
+//!
+//! ```
+//! use stepscope_inspect::motion::sine_polyline::{distortion, vertices};
+//!
+//! // Six segments per quarter of a sine: 0.269 % distortion.
+//! assert!((distortion(&vertices(0.0054), 4000).position - 0.002_69).abs() < 0.000_02);
+//! ```
 
 pub mod actual_motion;
 #[cfg(feature = "std")]

@@ -300,3 +300,18 @@ impl<'a> PacketTable<'a> {
         BitTimes::new(self.config.clock_hz(), self.experiment.baud())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::stored_run::record_run;
+
+    #[test]
+    fn rows_have_their_bytes_and_kind() {
+        let experiment = Experiment::from_json("{}").expect("it is valid");
+        let (run, recordings) = record_run(&experiment, 1).expect("it is short");
+        let table = PacketTable::new(&experiment, &run, 0, &recordings[0].packets);
+        assert_eq!((table.len(), table.kind(0), table.bytes(0).len()), (200, Some(RowKind::Packet), 1));
+        assert_eq!((table.row(200), table.kind(200)), (None, None));
+    }
+}

@@ -258,3 +258,31 @@ impl Observer for Watched<'_, '_> {
         self.columns.add(plant.cycle() as f64, self.values.iter().map(|&value| (point[value], point[value])));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::stored_run::Recording;
+    use stepscope_peripheral::units::Instant;
+    use stepscope_sim::Experiment;
+
+    #[test]
+    fn curves_end_at_the_final_position() {
+        let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("it is valid");
+        let mut run = experiment.start();
+        let mut recording = Recording::default();
+        let mut log = PlantLog::new(run.plant(0).expect("it has one"));
+        while !run.advance_observed(
+            (Instant(run.cycles().0 + 100_000), u64::MAX),
+            &mut [&mut recording],
+            &mut [&mut log],
+        ) {
+            log.snapshot(run.plant(0).expect("it has one"), recording.trace.len());
+        }
+        let (rotor, end) = (PlantLog::motor_index(0) + 1, run.cycles().0);
+        let window = CycleWindow { from: 0, to: end, columns: 600 };
+        let curves = log.curves(&recording.trace, window, &[rotor]);
+        assert!((curves[0].max.last().expect("columns") - 200.0).abs() < 0.1);
+        assert!((log.at(&recording.trace, end)[rotor] - 200.0).abs() < 0.1);
+    }
+}

@@ -158,3 +158,21 @@ fn motor_of(channel: usize, motor: &MotorResult, setup: &Setup) -> Motor {
         energy_left_over: energy_left_over(motor),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+    use stepscope_sim::plant_run::PlantRun;
+
+    #[test]
+    fn a_motor_that_follows_loses_no_steps() {
+        let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("it is valid");
+        let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("it has a plant");
+        run.finish();
+        let report = PlantReport::of(&experiment, &run, 0).expect("the controller has a plant");
+        let motor = &report.motors[0];
+        assert_eq!((motor.verdict.as_str(), motor.lost_full_steps, motor.slips), ("follows", 0, 0));
+        assert_eq!(PlantReport::of(&experiment, &run, 1), None);
+    }
+}

@@ -124,3 +124,16 @@ impl core::error::Error for OpenError {}
 pub(super) fn valid_clock(clock_hz: u32) -> Result<u32, OpenError> {
     if CLOCK_HZ.contains(&clock_hz.into()) { Ok(clock_hz) } else { Err(OpenError::Clock(clock_hz)) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::string::ToString;
+
+    #[test]
+    fn a_clock_out_of_range_is_an_error() {
+        assert_eq!(valid_clock(16_000_000), Ok(16_000_000));
+        let error = valid_clock(7).expect_err("it is too slow").to_string();
+        assert!(error.starts_with("the clock: 7 Hz is out of range; use "), "{error}");
+    }
+}

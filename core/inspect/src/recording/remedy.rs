@@ -26,3 +26,13 @@ impl From<String> for Note {
         Self { text, remedy: None }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_note_from_text_has_no_remedy() {
+        assert_eq!(Note::from(String::from("text")).remedy, None);
+    }
+}
