@@ -102,7 +102,7 @@ fn writes_tables_in_each_language() {
                 "A table: axis 0, compressed step table",
                 "\n#ifndef AXIS_0_H\n#define AXIS_0_H\n",
                 "static const uint64_t axis_0_interval[",
-                " * time comes to ",
+                " * time reaches ",
             ],
         ),
         (
@@ -139,9 +139,9 @@ fn exported_c_compiles_and_ends_at_the_stated_time() {
             assert_eq!((code, err.as_str()), (Some(0), ""), "{options:?}");
             let text = fs::read_to_string(&out).expect("a file");
             let line =
-                text.lines().find_map(|line| line.strip_prefix(" * time comes to ")).expect("a comment");
-            let (time, rest) = line.split_once(": it needs ").expect("a time");
-            let width = rest.split_once(", ").and_then(|(_, rest)| rest.split_once(',')).expect("a type").0;
+                text.lines().find_map(|line| line.strip_prefix(" * time reaches ")).expect("a comment");
+            let (time, rest) = line.split_once(": ").expect("a time");
+            let width = rest.split_once('(').and_then(|(_, rest)| rest.split_once(')')).expect("a type").0;
             let main = format!(
                 r#"#include "table.h"
 #include "table.h"

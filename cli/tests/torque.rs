@@ -165,7 +165,7 @@ fn rejects_tables_that_fix_no_line() {
     for (table, expected) in [
         ("a,b\n1,2\n", "no column has lengths; use a first row"),
         ("length_mm\n1\n", "there is no column steps; use a first row"),
-        ("length_mm,steps\n1,2\n", "1 pair of length and steps; give at least 2"),
+        ("length_mm,steps\n1,2\n", "1 pair of length and steps; use at least 2"),
         ("length_mm,steps\n1,2\n1,3\n", "all pairs have length 1; add a pair with another length"),
         (
             "length_mm,steps\n1e-200,1\n2e-200,2\n",
