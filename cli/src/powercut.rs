@@ -233,7 +233,7 @@ fn print(rows: &[Row], min_hold_up: u64, wear_rows: &[WearRow], setup: &CheckedS
             out,
             "controller {controller} {}: most worn cell {} writes per power cycle",
             name(*policy),
-            wear.writes_a_cycle
+            wear.writes_per_cycle
         )?;
         wear.life_power_cycles.map_or(Ok(()), |life| write!(out, ", lasts {life} power cycles"))?;
         writeln!(out)?;
@@ -260,7 +260,7 @@ fn tables(rows: &[Row], min_hold_up: u64, wear_rows: &[WearRow]) -> Tables {
         json!({
             "policy": name(*policy),
             "controller": controller,
-            "writes_a_power_cycle": wear.writes_a_cycle,
+            "writes_a_power_cycle": wear.writes_per_cycle,
             "life_power_cycles": wear.life_power_cycles,
         })
     });

@@ -5,7 +5,7 @@ use stepscope_inspect::plant::log::{CycleWindow, MOTOR, PlantLog, SUPPLY};
 use stepscope_inspect::trace::stored_run::Recording;
 use stepscope_peripheral::units::Instant;
 use stepscope_plant::{Observer, Plant};
-use stepscope_sim::Experiment;
+use stepscope_sim::{Experiment, RunLimits};
 
 /// Every point of a plant: its cycle and all values.
 #[derive(Default)]
@@ -33,7 +33,7 @@ fn logged(json: &str, slice: u64) -> (PlantLog, Recording, Vec<(u64, Vec<f64>)>,
     loop {
         let target = Instant(run.cycles().0.saturating_add(slice));
         let done = run.advance_observed(
-            (target, u64::MAX),
+            RunLimits { cycle: target, ..RunLimits::default() },
             std::slice::from_mut(&mut recording),
             &mut [(&mut log, &mut points)],
         );

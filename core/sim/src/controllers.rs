@@ -19,14 +19,15 @@ pub(crate) enum Generator {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Controllers {
-    /// Stays before cycle 0 if something else generates the edges.
+    /// Remains before cycle 0 if another generator makes the edges.
     pub(crate) bus: Bus,
     pub(crate) generator: Generator,
-    /// First cycle that is not run; without it the run ends when no further change is possible.
+    /// The first cycle that is not run; `None` to run until no event follows.
     pub(crate) end: Option<Instant>,
 }
 
 impl Controllers {
+    /// The first cycle that no controller has run.
     pub(crate) fn reached(&self) -> Instant {
         match &self.generator {
             Generator::Bus => self.bus.now(),
@@ -35,12 +36,16 @@ impl Controllers {
         }
     }
 
-    pub(crate) fn are_done(&self) -> bool {
-        match (self.end, &self.generator) {
-            (None, _) => self.at_rest(),
-            (Some(end), Generator::Bus) => self.bus.has_reached(end),
-            (Some(end), _) => self.reached() >= end,
+    /// Whether every controller has run to cycle `end`.
+    pub(crate) fn have_reached(&self, end: Instant) -> bool {
+        match &self.generator {
+            Generator::Bus => self.bus.has_reached(end),
+            _ => self.reached() >= end,
         }
+    }
+
+    pub(crate) fn are_done(&self) -> bool {
+        self.end.map_or_else(|| self.at_rest(), |end| self.have_reached(end))
     }
 
     pub(crate) fn at_rest(&self) -> bool {
@@ -51,8 +56,8 @@ impl Controllers {
         }
     }
 
-    /// Runs to cycle `end`, with a sink per controller, until a sink pauses; with [`Instant::NEVER`] until no further change
-    /// is possible.
+    /// Runs to cycle `end` or until a sink pauses, with a sink per controller; with [`Instant::NEVER`] until no event
+    /// follows.
     pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         match &mut self.generator {
             Generator::Bus => self.bus.run(end, sinks),
@@ -84,10 +89,8 @@ impl Controllers {
             Generator::StandAlone(_) => Faults::default(),
         }
     }
-}
 
-impl Controllers {
-    /// When idle, the cycle after the last change; the last edge was in `last`.
+    /// The cycle after the last event, if the run is idle. The last edge was in `last`.
     pub(crate) fn idle_from(&self, last: Instant) -> Option<Instant> {
         self.at_rest().then(|| match &self.generator {
             Generator::Bus => self.bus.idle_from(),
@@ -96,8 +99,8 @@ impl Controllers {
         })
     }
 
-    /// Reports an overload at the end of the latest cycle. Returns whether the controller reacts: stand-alone
-    /// ones do not.
+    /// Reports an overload at the end of the latest cycle. Returns whether the controller supports it; stand-alone ones
+    /// do not.
     pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) -> bool {
         match &mut self.generator {
             Generator::Bus => {
@@ -112,9 +115,10 @@ impl Controllers {
         }
     }
 
-    pub(crate) fn settles_in(&mut self, controller: usize, found: Option<Cycles>) {
+    /// Reports the result of a self-test to a controller.
+    pub(crate) fn set_settling_time(&mut self, controller: usize, time: Option<Cycles>) {
         if let Some(device) = self.bus.device_mut(controller) {
-            device.set_settling_time(found);
+            device.set_settling_time(time);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A validated scenario and its runs.
 
-use crate::plant::behind::PlantsBehind;
+use crate::plant::attached::AttachedPlants;
 use crate::{
     controller_plan::{self, ControllerPlan},
     controllers::{Controllers, Generator},
@@ -225,7 +225,7 @@ impl Experiment {
                 generator: self.generator(),
                 end: run.map(|cycles| Instant(cycles.0)),
             },
-            plants: self.plants().map(|plants| Box::new(PlantsBehind::new(plants, self.configs()))),
+            plants: self.plants().map(|plants| Box::new(AttachedPlants::new(plants, self.configs()))),
         }
     }
 

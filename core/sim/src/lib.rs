@@ -44,7 +44,7 @@ pub use hosts::{
 pub use line::noise;
 pub use live::{lateness, live_trace, session, session_times, twin};
 pub use plant::plant_run;
-pub use run::Run;
+pub use run::{Run, RunLimits};
 pub use stand_alone::{PanelSummary, StandAloneSummary};
 pub use summary::{ControllerSummary, JobSummary, Summary};
 pub use validated::{SelectedAxis, ValidatedScenario, axes_of, bus_of};

@@ -1,6 +1,6 @@
 //! A run in progress.
 
-use crate::plant::behind::{Behind, PlantsBehind};
+use crate::plant::attached::{AttachedPlant, AttachedPlants};
 use crate::{
     controllers::{Controllers, Generator},
     hosts::framed_host::FramedHost,
@@ -16,10 +16,23 @@ use stepscope_peripheral::{
 use stepscope_plant::{Observer, Plant, measures::PlantResult};
 use stepscope_scenario::END_OF_TIME;
 
+/// A run in progress, from [`Experiment::start`](crate::Experiment::start). It can run in portions and be cloned.
+///
+/// ```
+/// use stepscope_peripheral::signal::Record;
+/// use stepscope_sim::Experiment;
+///
+/// let mut run = Experiment::from_json("{}").expect("no problems").start();
+/// let mut trace: Vec<Record> = Vec::new();
+/// while !run.advance(1000, &mut trace) {
+///     println!("cycle {}: {} edges", run.cycles().0, trace.len());
+/// }
+/// assert_eq!(run.positions()[0], 3200);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Run {
     pub(crate) controllers: Controllers,
-    pub(crate) plants: Option<Box<PlantsBehind>>,
+    pub(crate) plants: Option<Box<AttachedPlants>>,
 }
 
 impl Run {
@@ -48,7 +61,7 @@ impl Run {
         self.controllers.bus.line().forced()
     }
 
-    /// Position counters of the first controller or its replacement.
+    /// Positions of the first controller or of what replaces it, in steps per channel.
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
         self.controllers.positions()
     }
@@ -78,6 +91,7 @@ impl Run {
         self.device().ticks_done()
     }
 
+    /// Cycles that have been run.
     pub fn cycles(&self) -> Cycles {
         if let Some(ended) = self.plants.as_ref().and_then(|plants| plants.ended) {
             return Cycles(ended.0);
@@ -85,6 +99,7 @@ impl Run {
         Cycles(self.controllers.reached().0)
     }
 
+    /// Whether the run has ended.
     pub fn is_done(&self) -> bool {
         if let Some(plants) = &self.plants {
             return plants.ended.is_some();
@@ -92,31 +107,27 @@ impl Run {
         self.controllers.are_done()
     }
 
-    /// Runs until the first controller has written `records` more or to the end; true at the end.
+    /// Runs until the first controller has written `records` more, or to the end; true at the end.
     pub fn advance(&mut self, records: u64, sink: &mut impl Sink) -> bool {
         self.advance_each(records, slice::from_mut(sink))
     }
 
-    /// Runs until one controller has written `records` more, with a sink per controller; true at the end.
+    /// Runs until a controller has written `records` more, or to the end, with a sink per controller; true at the end.
     pub fn advance_each(&mut self, records: u64, sinks: &mut [impl Sink]) -> bool {
-        if self.plants.is_some() {
-            return self.advance_observed::<_, ()>((Instant::NEVER, records), sinks, &mut []);
-        }
-        let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: records }).collect();
-        let end = self.controllers.end.unwrap_or(Instant::NEVER);
-        self.controllers.run_to(end, &mut slices);
-        self.is_done()
+        let limits = RunLimits { records, ..RunLimits::default() };
+        self.advance_observed::<_, ()>(limits, sinks, &mut [])
     }
 
-    /// Lets the run continue when it is idle.
-    pub(crate) const fn without_end(&mut self) {
+    /// Continues the run while it is idle.
+    pub(crate) const fn extend_to_end_of_time(&mut self) {
         self.controllers.end = Some(Instant(END_OF_TIME));
     }
 
     /// Runs to cycle `end`, with a sink per controller.
     pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         if self.plants.is_some() {
-            self.advance_observed::<_, ()>((end, u64::MAX), sinks, &mut []);
+            let limits = RunLimits { cycle: end, ..RunLimits::default() };
+            self.advance_observed::<_, ()>(limits, sinks, &mut []);
             return;
         }
         self.controllers.run_to(end, sinks);
@@ -126,21 +137,25 @@ impl Run {
         self.controllers.bus.line_mut()
     }
 
-    /// Whether nothing changes without input.
+    /// Whether no event follows without input.
     pub(crate) fn is_idle(&self) -> bool {
         self.controllers.at_rest()
     }
 
-    /// Runs to a cycle, or until a controller has written that many records more, with a sink and an observer per
-    /// controller; true at the end. Does nothing without plants.
+    /// Runs to the limits or to the end, with a sink and an observer of the plant per controller; true at the end.
     pub fn advance_observed<S: Sink, O: Observer>(
         &mut self,
-        until: (Instant, u64),
+        limits: RunLimits,
         sinks: &mut [S],
         observers: &mut [O],
     ) -> bool {
-        let Self { controllers, plants } = self;
-        plants.as_mut().is_none_or(|plants| plants.advance(controllers, until, sinks, observers))
+        if let Some(plants) = &mut self.plants {
+            return plants.advance(&mut self.controllers, limits, sinks, observers);
+        }
+        let mut slices: Vec<_> = sinks.iter_mut().map(|sink| Slice { sink, left: limits.records }).collect();
+        let end = self.controllers.end.unwrap_or(Instant::NEVER).min(limits.cycle);
+        self.controllers.run_to(end, &mut slices);
+        self.is_done()
     }
 
     pub(crate) fn clock_observed<S: Sink, O: Observer>(&mut self, sinks: &mut [S], observers: &mut [O]) {
@@ -149,29 +164,32 @@ impl Run {
         }
     }
 
-    fn behind(&self, controller: usize) -> Option<&Behind> {
-        self.plants.as_ref()?.behind.get(controller)
+    fn attached(&self, controller: usize) -> Option<&AttachedPlant> {
+        self.plants.as_ref()?.plants.get(controller)
     }
 
+    /// The plant of a controller.
     pub fn plant(&self, controller: usize) -> Option<&Plant> {
-        self.behind(controller).map(|behind| &behind.plant)
+        self.attached(controller).map(|attached| &attached.plant)
     }
 
-    /// Settling time per channel found by the self-test, in cycles; empty before the end of the boot.
+    /// Settling time per channel that the self-test measured, in cycles; empty before the end of the boot.
     pub fn self_test(&self, controller: usize) -> &[Option<u64>] {
-        self.behind(controller).map_or(&[], |behind| &behind.found)
+        self.attached(controller).map_or(&[], |attached| &attached.settling_times)
     }
 
     /// Cycle of the last overload of a controller.
     pub fn overload(&self, controller: usize) -> Option<u64> {
-        self.behind(controller)?.overload_at
+        self.attached(controller)?.overload_at
     }
 
+    /// The results of all plants.
     pub fn results(&self) -> Vec<PlantResult> {
-        let all = (0..).map_while(|index| self.behind(index));
-        all.map(|behind| behind.measures.result(&behind.plant)).collect()
+        let all = (0..).map_while(|index| self.attached(index));
+        all.map(|attached| attached.measures.result(&attached.plant)).collect()
     }
 
+    /// Runs one cycle, with a sink per controller.
     pub fn clock(&mut self, sinks: &mut [impl Sink]) {
         if self.plants.is_some() {
             return self.clock_observed::<_, ()>(sinks, &mut []);
@@ -180,7 +198,22 @@ impl Run {
     }
 }
 
-/// Pauses after so many records.
+/// Limits of a part of a run; by default none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunLimits {
+    /// The first cycle that is not run.
+    pub cycle: Instant,
+    /// Maximum number of records of a controller.
+    pub records: u64,
+}
+
+impl Default for RunLimits {
+    fn default() -> Self {
+        Self { cycle: Instant::NEVER, records: u64::MAX }
+    }
+}
+
+/// Pauses after `left` more records.
 struct Slice<'a, S> {
     sink: &'a mut S,
     left: u64,
@@ -198,5 +231,42 @@ impl<S: Sink> Sink for Slice<'_, S> {
 
     fn is_paused(&self) -> bool {
         self.left == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Experiment;
+    use alloc::vec;
+
+    const TWO_PLANTS: &str =
+        r#"{ "plant": {}, "line": { "address": 1 }, "controllers": [ { "address": 2, "axes": [ {} ] } ] }"#;
+
+    #[test]
+    fn a_part_of_a_run_has_at_most_the_requested_records() {
+        for (json, sinks) in [("{}", 1), (r#"{ "plant": {} }"#, 1), (TWO_PLANTS, 2), (TWO_PLANTS, 1)] {
+            let experiment = Experiment::from_json(json).expect("no problems");
+            let (mut whole, mut parts) =
+                (vec![Vec::<Record>::new(); sinks], vec![Vec::<Record>::new(); sinks]);
+            let expected = experiment.run_each(&mut whole);
+            let (mut run, mut is_done) = (experiment.start(), false);
+            while !is_done {
+                let before: Vec<usize> = parts.iter().map(Vec::len).collect();
+                is_done = run.advance_each(100, &mut parts);
+                let added = parts.iter().zip(before).map(|(part, before)| part.len() - before);
+                assert!(added.max() <= Some(100), "{json}");
+            }
+            assert!(parts == whole && run.cycles() == expected.cycles(), "{json}");
+            assert_eq!(run.results(), expected.results(), "{json}");
+        }
+    }
+
+    #[test]
+    fn a_run_without_plants_stops_at_its_limits() {
+        let mut run = Experiment::from_json("{}").expect("no problems").start();
+        let limits = RunLimits { cycle: Instant(5000), ..RunLimits::default() };
+        assert!(!run.advance_observed::<_, ()>(limits, &mut [Vec::<Record>::new()], &mut []));
+        assert_eq!(run.cycles(), Cycles(5000));
     }
 }

@@ -18,7 +18,6 @@ use stepscope_core::{
         },
         trace::stored_run::{RECORDS_PER_CHECK, check_records},
     },
-    peripheral::units::Instant,
     plant::{
         Refused,
         parameters::Setup,
@@ -26,6 +25,7 @@ use stepscope_core::{
         settling::SHARE,
     },
     scenario::{Scenario, to_json},
+    sim::RunLimits,
 };
 use wasm_bindgen::prelude::*;
 
@@ -177,7 +177,8 @@ impl ValidatedScenario {
             logs.push(PlantLog::new(plant));
         }
         let mut recordings: Vec<Recording> = logs.iter().map(|_| Recording::default()).collect();
-        while !run.advance_observed((Instant::NEVER, RECORDS_PER_CHECK), &mut recordings, &mut logs) {
+        let limits = RunLimits { records: RECORDS_PER_CHECK, ..RunLimits::default() };
+        while !run.advance_observed(limits, &mut recordings, &mut logs) {
             check_records(&recordings).map_err(|error| JsError::new(&error.to_string()))?;
         }
         let (Some(log), Some(report), Some(recording)) =

@@ -5,7 +5,7 @@ use serde::Serialize;
 use stepscope_core::{
     inspect::plant::log::PlantLog,
     peripheral::{signal::Sink, units::Instant},
-    sim::{Experiment, Run},
+    sim::{Experiment, Run, RunLimits},
 };
 use wasm_bindgen::prelude::*;
 
@@ -33,8 +33,8 @@ pub(crate) fn advance<S: Sink>(
         None => run.advance_each(records, sinks),
         Some(plants) => {
             let step = plants.setups.iter().map(|setup| u64::from(setup.grid_cycles())).min().unwrap_or(1);
-            let target = Instant(run.cycles().0.saturating_add(records * step));
-            run.advance_observed((target, records), sinks, logs)
+            let cycle = Instant(run.cycles().0.saturating_add(records * step));
+            run.advance_observed(RunLimits { cycle, records }, sinks, logs)
         }
     }
 }

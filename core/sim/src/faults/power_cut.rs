@@ -1,12 +1,25 @@
-//! Power cuts: the position of a stand-alone controller after a power failure in any cycle (CONTROLLER.md G7).
+//! Power cuts: the position of a stand-alone controller after a power failure in a cycle (CONTROLLER.md G7).
 //!
 //! ```text
 //! run ────────────┬─────────────┬──────────┬───────── the scenario's run, uninterrupted
 //!                 │ cut in c    │ cut in c'│
-//!                 └─ POWER_LOSS ─ OFF ─ power back ─ memory read: known, known to be lost, or silently wrong
+//!                 └─ POWER_LOSS ─ OFF ─ power back ─ memory read: position known, lost, or silently wrong
 //! ```
 //!
-//! Each cut is a copy of the run, so only the cycles after it are computed.
+//! Each cut continues a copy of the run, so only the cycles after it are computed.
+//!
+//! ```
+//! use stepscope_peripheral::units::Instant;
+//! use stepscope_sim::{Experiment, power_cut::{PowerCuts, tally}};
+//!
+//! let json = r#"{ "clock_hz": 1000000, "source": { "standalone": [ { "max_speed_hz": 5000, "debounce_cycles": 0,
+//!     "memory": { "byte_write_cycles": 100, "hold_up_cycles": 1699 },
+//!     "inputs": [ { "cycle": 5000, "input": "start" } ] } ] } }"#;
+//! let experiment = Experiment::from_json(json).expect("no problems");
+//! let controllers = experiment.stand_alone().expect("a stand-alone controller");
+//! let cuts = PowerCuts::of(controllers, Instant(experiment.cost().end_cycle), 200, 1);
+//! assert_eq!(tally(controllers, cuts.cycles()).wrong, 0);
+//! ```
 
 use alloc::{collections::BTreeSet, vec::Vec};
 use rand_xoshiro::{
@@ -23,12 +36,13 @@ use stepscope_peripheral::units::Instant;
 /// The position after a cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
+    /// Trusted and correct.
     Known,
     /// Not trusted, but trusted before the cut.
     Lost,
-    /// Not trusted, nor before the cut.
+    /// Trusted neither before nor after the cut.
     NeverKnown,
-    /// Trusted, and true by the previous zero: the new one had not been saved.
+    /// Trusted, and correct relative to the previous zero, because the new zero had not been saved.
     OldZero,
     /// Trusted and wrong.
     Wrong,
@@ -36,6 +50,7 @@ pub enum Outcome {
 
 /// Outcomes of all cuts and controllers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "one count per outcome")]
 pub struct Tally {
     pub cuts: u64,
     pub known: u64,
@@ -43,6 +58,7 @@ pub struct Tally {
     pub never_known: u64,
     pub old_zero: u64,
     pub wrong: u64,
+    /// The first cut that lost a position.
     pub first_lost: Option<Instant>,
     /// The first cut that left a wrong position.
     pub first_wrong: Option<Instant>,
@@ -66,7 +82,7 @@ impl Tally {
         }
     }
 
-    /// Adds the cuts of `other`, which come later.
+    /// Adds the counts of `other`, whose cuts are later.
     pub fn join(&mut self, other: &Self) {
         self.cuts += other.cuts;
         self.known += other.known;
@@ -88,37 +104,19 @@ pub struct PowerCuts {
 }
 
 impl PowerCuts {
-    /// Up to `count` cycles of a run that ends before `end`: all, or random ones, half of them anywhere, half while a record
-    /// is written.
-    #[must_use]
+    /// At most `count` cycles of a run that ends before `end`: all cycles, or random ones, of which about half are during
+    /// writes of the memory.
     pub fn of(checked: &CheckedSetup, end: Instant, count: usize, seed: u64) -> Self {
-        let (length, writes) = writes(checked, end);
-        let count = count as u64;
-        let cycles = if length <= count {
+        let (length, writes) = byte_writes(checked, end);
+        let cycles = if length <= count as u64 {
             (1..length.max(2)).collect()
         } else {
-            let mut chosen = BTreeSet::new();
-            let mut random = SplitMix64::seed_from_u64(seed);
-            let begins = writes.iter().flat_map(|&(begun, _)| [begun.saturating_sub(1), begun, begun + 1]);
-            let begins: Vec<u64> = begins.filter(|&cycle| cycle > 0).collect();
-            // At most a quarter of the cuts, spread over the run.
-            let stride = begins.len().div_ceil((count as usize / 4).max(1)).max(1);
-            chosen.extend(begins.into_iter().step_by(stride));
-            let spans: u64 = writes.iter().map(|&(begun, end)| end - begun).sum();
-            while (chosen.len() as u64) < count {
-                let anywhere = 1 + random.next_u64() % (length - 1);
-                let cycle = match random.next_u64() % 2 {
-                    0 if spans > 0 => within(&writes, random.next_u64() % spans),
-                    _ => anywhere,
-                };
-                chosen.insert(cycle.max(1));
-            }
-            chosen.into_iter().collect()
+            random_cuts(length, &writes, count, seed)
         };
         Self { checked: checked.clone(), cycles, length }
     }
 
-    /// Rising.
+    /// The cycles of the cuts, in rising order.
     pub fn cycles(&self) -> &[u64] {
         &self.cycles
     }
@@ -128,13 +126,36 @@ impl PowerCuts {
         self.length
     }
 
+    /// The controllers.
     pub const fn checked(&self) -> &CheckedSetup {
         &self.checked
     }
 }
 
-/// The same controllers with another policy and hold-up of their memories.
-#[must_use]
+/// At most a quarter of the cuts are at the begin of a write, spread over the run.
+const MAX_SHARE_OF_BEGINS: usize = 4;
+
+fn random_cuts(length: u64, writes: &[ByteWrite], count: usize, seed: u64) -> Vec<u64> {
+    let mut chosen = BTreeSet::new();
+    let begins =
+        writes.iter().flat_map(|&ByteWrite { begin, .. }| [begin.saturating_sub(1), begin, begin + 1]);
+    let begins: Vec<u64> = begins.filter(|&cycle| cycle > 0).collect();
+    let stride = begins.len().div_ceil((count / MAX_SHARE_OF_BEGINS).max(1)).max(1);
+    chosen.extend(begins.into_iter().step_by(stride));
+    let write_cycles: u64 = writes.iter().map(ByteWrite::cycles).sum();
+    let mut random = SplitMix64::seed_from_u64(seed);
+    while chosen.len() < count {
+        let anywhere = 1 + random.next_u64() % (length - 1);
+        let cycle = match random.next_u64() % 2 {
+            0 if write_cycles > 0 => cycle_within(writes, random.next_u64() % write_cycles),
+            _ => anywhere,
+        };
+        chosen.insert(cycle.max(1));
+    }
+    chosen.into_iter().collect()
+}
+
+/// The same controllers with another memory policy and hold-up time.
 pub fn with_memory(checked: &CheckedSetup, policy: Policy, hold_up_cycles: u64) -> CheckedSetup {
     let mut setup = checked.setup();
     for one in &mut setup.controllers {
@@ -143,27 +164,30 @@ pub fn with_memory(checked: &CheckedSetup, policy: Policy, hold_up_cycles: u64) 
     setup.check().unwrap_or_else(|_| checked.clone())
 }
 
-/// The minimum hold-up that loses no more positions than `max` with the policy `power_loss`; `losses` counts the losses
-/// of a setup.
-pub fn min_hold_up(checked: &CheckedSetup, max: u64, mut losses: impl FnMut(&CheckedSetup) -> u64) -> u64 {
+/// The minimum hold-up time with the policy `power_loss` that loses no more positions than `max_hold_up`, in cycles.
+/// `losses` counts the lost positions of a setup.
+pub fn min_hold_up(
+    checked: &CheckedSetup,
+    max_hold_up: u64,
+    mut losses: impl FnMut(&CheckedSetup) -> u64,
+) -> u64 {
     let mut lost = |hold_up| losses(&with_memory(checked, Policy::PowerLoss, hold_up));
-    // A jump beyond the start-stop range loses steps with any hold-up.
-    let min = lost(max);
-    let (mut low, mut enough) = (0, max);
-    while low < enough {
-        let middle = low + (enough - low) / 2;
-        if lost(middle) > min { low = middle + 1 } else { enough = middle }
+    // A stop above the start-stop rate loses the position with any hold-up time.
+    let min_lost = lost(max_hold_up);
+    let (mut low, mut high) = (0, max_hold_up);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if lost(middle) > min_lost { low = middle + 1 } else { high = middle }
     }
-    enough
+    high
 }
 
-/// Cuts the power in each of these cycles, which rise, and counts the outcomes.
-#[must_use]
+/// Cuts the power in each of these cycles, which are in rising order, and counts the outcomes.
 pub fn tally(checked: &CheckedSetup, cycles: &[u64]) -> Tally {
     let mut found = Tally::default();
-    let mut run = Watched::new(checked);
+    let mut run = TrackedRun::new(checked);
     for &cycle in cycles {
-        run.go(cycle);
+        run.run_to(cycle);
         for outcome in run.clone().cut() {
             found.count(Instant(cycle), outcome);
         }
@@ -171,55 +195,57 @@ pub fn tally(checked: &CheckedSetup, cycles: &[u64]) -> Tally {
     found
 }
 
-/// Byte times until a new zero is saved: a record that is being written, and its own.
+/// Byte times until a new zero is saved: the record in progress, its own record, and a margin.
 const OLD_ZERO_BYTES: u64 = 34;
 
-/// A controller's true position.
+/// A controller's true zero.
 #[derive(Clone, Copy, Debug)]
-struct Truth {
-    /// The bus's position counter where the position is 0.
+struct TrueZero {
+    /// The step counter of the bus at position 0.
     zero: i32,
-    /// The zero before the last one was set, and when.
-    before: (i32, u64),
+    old_zero: i32,
+    /// Cycle in which `zero` replaced `old_zero`.
+    set_at: u64,
     /// Whether the controller trusted its last position.
-    known: bool,
+    is_trusted: bool,
 }
 
-/// A run, and the true positions in it.
+/// A run that tracks the true zero of each controller.
 #[derive(Clone, Debug)]
-struct Watched {
+struct TrackedRun {
     run: StandAlone,
-    truth: Vec<Truth>,
-    /// Which controllers had no position in the cycle before.
-    down: Vec<bool>,
+    zeros: Vec<TrueZero>,
+    /// Which controllers had no position in the previous cycle.
+    were_down: Vec<bool>,
 }
 
-impl Watched {
+impl TrackedRun {
     fn new(checked: &CheckedSetup) -> Self {
         let run = StandAlone::new(checked);
-        // Before memory is read, its content is the truth.
-        let truth = (0..run.controllers()).map(|index| {
+        // The initial contents of the memory count as correct.
+        let zeros = (0..run.controllers()).map(|index| {
             let (position, trust) = run.position_after_power_up(index).unwrap_or((0, 0));
-            Truth { zero: position.wrapping_neg(), before: (position.wrapping_neg(), 0), known: trust > 0 }
+            let zero = position.wrapping_neg();
+            TrueZero { zero, old_zero: zero, set_at: 0, is_trusted: trust > 0 }
         });
-        let truth: Vec<Truth> = truth.collect();
-        let down = truth.iter().map(|_| true).collect();
-        Self { run, truth, down }
+        let zeros: Vec<TrueZero> = zeros.collect();
+        let were_down = zeros.iter().map(|_| true).collect();
+        Self { run, zeros, were_down }
     }
 
-    fn go(&mut self, end: u64) {
+    fn run_to(&mut self, end: u64) {
         while self.run.now().0 < end {
             let next = self.run.cycles_until_event().map_or(end, |cycles| self.run.now().0 + cycles.0 + 1);
             self.run.run(Instant(next.min(end)), &mut ());
             drop_panels(&mut self.run);
-            self.watch();
+            self.track_zeros();
         }
     }
 
-    /// Follows the true zero. A position read from memory counts as true only if it was: a wrong one stays wrong.
-    fn watch(&mut self) {
+    /// Follows changes of zero. A position that was restored from memory changes no zero, so a wrong one stays wrong.
+    fn track_zeros(&mut self) {
         let (steps, now) = (self.run.positions(), self.run.now().0);
-        for (index, (truth, was_down)) in self.truth.iter_mut().zip(&mut self.down).enumerate() {
+        for (index, (zero, was_down)) in self.zeros.iter_mut().zip(&mut self.were_down).enumerate() {
             let is_down = is_down(self.run.state(index));
             let came_up = core::mem::replace(was_down, is_down) && !is_down;
             let (Some(position), Some(steps)) = (self.run.position(index), steps.get(index)) else {
@@ -228,47 +254,54 @@ impl Watched {
             if is_down {
                 continue;
             }
-            let (zero, known) = (steps.wrapping_sub(position), self.run.trust(index) > Some(0));
-            if !(came_up && known) && zero != truth.zero {
-                (truth.before, truth.zero) = ((truth.zero, now), zero);
+            let (new_zero, is_trusted) = (steps.wrapping_sub(position), self.run.trust(index) > Some(0));
+            let is_restored_from_memory = came_up && is_trusted;
+            if !is_restored_from_memory && new_zero != zero.zero {
+                (zero.old_zero, zero.zero, zero.set_at) = (zero.zero, new_zero, now);
             }
-            truth.known = known;
+            zero.is_trusted = is_trusted;
         }
     }
 
-    /// Cuts the power in the next cycle, restores it when all is off, and compares the positions read from memory.
+    /// Cuts the power in the next cycle, restores it when no event follows, and checks the positions read from memory.
     fn cut(mut self) -> Vec<Outcome> {
-        let Self { run, truth, .. } = &mut self;
+        let Self { run, zeros, .. } = &mut self;
         run.drop_inputs();
         let at = run.now();
         let power = |level| Change::Level(Signal::Power, level);
-        // The power may be off already.
+        // The power may be off already, so an error does not matter.
         let _ = run.enter(at, 0, power(false));
         run.run(Instant(at.0 + 1), &mut ());
-        // A step of this cycle still counts.
+        // A step in the cycle of the cut still counts.
         let steps = run.positions();
         run.run(Instant::NEVER, &mut ());
         let _ = run.enter(run.now(), 0, power(true));
         run.run(Instant(run.now().0 + 1), &mut ());
-        while (0..truth.len()).any(|index| is_down(run.state(index))) {
+        while (0..zeros.len()).any(|index| is_down(run.state(index))) {
             let Some(cycles) = run.cycles_until_event() else { break };
             run.run(Instant(run.now().0 + cycles.0 + 1), &mut ());
         }
-        let outcome = |((index, truth), steps): ((usize, &Truth), i32)| {
-            let is = |zero| run.position(index) == Some(steps.wrapping_sub(zero));
-            let (before, set) = truth.before;
-            let byte = run.checked().controllers().get(index).map_or(0, |one| one.memory.byte_write_cycles);
-            let may_be_old = at.0 <= set.saturating_add(OLD_ZERO_BYTES * u64::from(byte));
-            match run.trust(index) {
-                None | Some(0) if truth.known => Outcome::Lost,
-                None | Some(0) => Outcome::NeverKnown,
-                _ if !truth.known => Outcome::Wrong,
-                _ if is(truth.zero) => Outcome::Known,
-                _ if is(before) && may_be_old => Outcome::OldZero,
-                _ => Outcome::Wrong,
-            }
-        };
-        truth.iter().enumerate().zip(steps).map(outcome).collect()
+        zeros
+            .iter()
+            .zip(steps)
+            .enumerate()
+            .map(|(index, (zero, steps))| outcome(run, index, zero, steps, at))
+            .collect()
+    }
+}
+
+/// The outcome of a cut in cycle `at` at step counter `steps`.
+fn outcome(run: &StandAlone, index: usize, zero: &TrueZero, steps: i32, at: Instant) -> Outcome {
+    if run.trust(index).is_none_or(|trust| trust == 0) {
+        return if zero.is_trusted { Outcome::Lost } else { Outcome::NeverKnown };
+    }
+    let matches_zero = |zero| run.position(index) == Some(steps.wrapping_sub(zero));
+    let byte = run.checked().controllers().get(index).map_or(0, |one| one.memory.byte_write_cycles);
+    let saved_at = zero.set_at.saturating_add(OLD_ZERO_BYTES * u64::from(byte));
+    match zero.is_trusted {
+        true if matches_zero(zero.zero) => Outcome::Known,
+        true if matches_zero(zero.old_zero) && at.0 <= saved_at => Outcome::OldZero,
+        _ => Outcome::Wrong,
     }
 }
 
@@ -276,28 +309,42 @@ const fn is_down(state: Option<State>) -> bool {
     matches!(state, Some(State::Off | State::SelfTest | State::PowerLoss))
 }
 
-/// Length of the run, and begin and end of each byte written.
-fn writes(checked: &CheckedSetup, end: Instant) -> (u64, Vec<(u64, u64)>) {
+/// The cycles in which a byte of memory is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct ByteWrite {
+    begin: u64,
+    end: u64,
+}
+
+impl ByteWrite {
+    const fn cycles(&self) -> u64 {
+        self.end - self.begin
+    }
+}
+
+/// The length of a run, and its writes in rising order.
+fn byte_writes(checked: &CheckedSetup, end: Instant) -> (u64, Vec<ByteWrite>) {
     let mut run = StandAlone::new(checked);
     let mut found = BTreeSet::new();
     while let Some(cycles) = run.cycles_until_event().filter(|cycles| run.now() + *cycles < end) {
         run.run(Instant(run.now().0 + cycles.0 + 1), &mut ());
         drop_panels(&mut run);
         for (index, one) in checked.controllers().iter().enumerate() {
-            if let Some(begun) = run.writing_since(index) {
-                found.insert((begun.0, begun.0 + u64::from(one.memory.byte_write_cycles)));
+            if let Some(Instant(begin)) = run.writing_since(index) {
+                found.insert(ByteWrite { begin, end: begin + u64::from(one.memory.byte_write_cycles) });
             }
         }
     }
     (run.now().0, found.into_iter().collect())
 }
 
-fn within(spans: &[(u64, u64)], mut offset: u64) -> u64 {
-    for &(begun, end) in spans {
-        if offset < end - begun {
-            return begun + offset;
+/// The cycle with this offset, counted over all writes.
+fn cycle_within(writes: &[ByteWrite], mut offset: u64) -> u64 {
+    for write in writes {
+        if offset < write.cycles() {
+            return write.begin + offset;
         }
-        offset -= end - begun;
+        offset -= write.cycles();
     }
     1
 }
@@ -308,17 +355,17 @@ fn drop_panels(run: &mut StandAlone) {
     }
 }
 
+/// Wear of a memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wear {
     /// Writes of the most worn cell per power cycle.
-    pub writes_a_cycle: f64,
+    pub writes_per_cycle: f64,
     /// Power cycles until that cell has reached its endurance; `None` where nothing is written.
     pub life_power_cycles: Option<u64>,
 }
 
-/// The wear of controller `index`: its run up to `end` with a cut there, `cycles` times, each with the memory of the
-/// run before.
-#[must_use]
+/// The wear of controller `index` in `cycles` power cycles, each with the memory of the previous one: a run up to `end`,
+/// then a power cut. `endurance` is the number of writes that a cell survives.
 pub fn wear(checked: &CheckedSetup, end: Instant, index: usize, cycles: u32, endurance: u32) -> Wear {
     let mut setup = checked.setup();
     let mut totals: Vec<u64> = Vec::new();
@@ -329,7 +376,7 @@ pub fn wear(checked: &CheckedSetup, end: Instant, index: usize, cycles: u32, end
         let mut run = StandAlone::new(&checked);
         run.run(end, &mut ());
         let at = run.now();
-        // The power may be off already.
+        // The power may be off already, so an error does not matter.
         let _ = run.enter(at, 0, Change::Level(Signal::Power, false));
         run.run(Instant::NEVER, &mut ());
         let writes = run.writes(index);
@@ -340,9 +387,9 @@ pub fn wear(checked: &CheckedSetup, end: Instant, index: usize, cycles: u32, end
         }
     }
     let max = totals.into_iter().max().unwrap_or(0);
-    let writes_a_cycle = max as f64 / f64::from(done.max(1));
+    let writes_per_cycle = max as f64 / f64::from(done.max(1));
     let life = (max > 0).then(|| u64::from(endurance) * u64::from(done) / max);
-    Wear { writes_a_cycle, life_power_cycles: life }
+    Wear { writes_per_cycle, life_power_cycles: life }
 }
 
 #[cfg(test)]

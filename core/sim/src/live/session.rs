@@ -108,7 +108,7 @@ impl Session {
         let experiment = Experiment::new(&blank)?;
         let clock_hz = experiment.config().clock_hz();
         let mut run = experiment.start();
-        run.without_end();
+        run.extend_to_end_of_time();
         let mut session = Self {
             blank,
             run,

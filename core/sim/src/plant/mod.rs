@@ -1,4 +1,4 @@
-//! Runs with plants behind the controllers (PLANT).
+//! Runs with plants attached to the controllers (PLANT).
 
-pub(crate) mod behind;
+pub(crate) mod attached;
 pub mod plant_run;

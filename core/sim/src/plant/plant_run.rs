@@ -1,8 +1,6 @@
-//! A run with access to its plants, point by point.
-//!
-//! Every run of a scenario with plants drives them; this one also reports their points.
+//! A run whose plants are observed at each point of their time grid.
 
-use crate::{Experiment, Run};
+use crate::{Experiment, Run, RunLimits};
 use alloc::vec::Vec;
 use core::ops::Deref;
 use stepscope_peripheral::{
@@ -12,6 +10,15 @@ use stepscope_peripheral::{
 use stepscope_plant::Observer;
 
 /// A run with a sink and an observer of the plant per controller; dereferences to [`Run`].
+///
+/// ```
+/// use stepscope_sim::{Experiment, plant_run::PlantRun};
+///
+/// let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problems");
+/// let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("the scenario has a plant");
+/// run.finish();
+/// assert_eq!(run.results()[0].motors[0].lost, 0); // no lost steps
+/// ```
 pub struct PlantRun<S, O> {
     run: Run,
     sinks: Vec<S>,
@@ -41,7 +48,7 @@ impl<S: Sink, O: Observer> PlantRun<S, O> {
         Instant(self.run.cycles().0)
     }
 
-    /// The sinks and observers, in the order of the scenario.
+    /// The sinks and observers in the order of the scenario.
     #[must_use]
     pub fn into_parts(self) -> Vec<(S, O)> {
         self.sinks.into_iter().zip(self.observers).collect()
@@ -61,8 +68,12 @@ impl<S: Sink, O: Observer> PlantRun<S, O> {
 
     /// Runs `cycles` more, at least one, or to the end; true at the end.
     pub fn advance(&mut self, cycles: Cycles) -> bool {
-        let target = Instant(self.now().0.saturating_add(cycles.0.max(1)));
-        self.run.advance_observed((target, u64::MAX), &mut self.sinks, &mut self.observers)
+        let cycle = Instant(self.now().0.saturating_add(cycles.0.max(1)));
+        self.run.advance_observed(
+            RunLimits { cycle, ..RunLimits::default() },
+            &mut self.sinks,
+            &mut self.observers,
+        )
     }
 }
 
