@@ -221,7 +221,7 @@ fn rejects_reversed_ranges_and_indexes_out_of_range() {
         (&["capture", "recorded-step-table", "--map", "STEP0=#99"], "there is no channel #99; use one of "),
         (&["send", "framed-link", "--port", "/dev/null", "--lead", "255"], "out of range; use 0 to 254"),
         (&["serve", "framed-link", "--tcp", "127.0.0.1:99999"], "use both, such as 127.0.0.1:4000"),
-        (&["serve", "framed-link", "--tcp", "127.0.0.1:0", "--pace=-1"], "give 0.001 to 100"),
+        (&["serve", "framed-link", "--tcp", "127.0.0.1:0", "--pace=-1"], "use 0.001 to 100"),
     ];
     for (arguments, expected) in rows {
         let (code, out, err) = stepscope(arguments, "");

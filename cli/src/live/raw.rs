@@ -39,7 +39,7 @@ pub(super) fn send(
             break;
         }
         host.written(at);
-        line.update(|| host.report(false).standing());
+        line.update(|| host.report(false).status());
     }
     drop(line);
     if lost.is_none() {

@@ -32,7 +32,7 @@ use stepscope_core::{
     },
     sim::{
         Experiment,
-        framed_host::{Conversation, Report, Standing, for_real_line},
+        framed_host::{Conversation, HostStatus, Report, for_real_line},
         raw_host::RawHost,
         session::{Pace, SessionClock},
     },
@@ -190,7 +190,7 @@ impl Sender {
                 Received::Nothing | Received::Connected => {}
             }
             let Self { line, host, .. } = self;
-            line.update(|| Standing::new(host).to_string());
+            line.update(|| HostStatus::new(host).to_string());
         }
         Ok(())
     }

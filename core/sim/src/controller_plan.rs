@@ -19,7 +19,7 @@ use stepscope_peripheral::{
     wire::{
         ForcedLevel, Schedule,
         frame::{ACK_LEN, encode_frame},
-        packet::{ChannelCommand, Tick},
+        packet::{ChannelCommand, MAX_STEPS, Tick},
     },
 };
 use stepscope_scenario::{
@@ -28,11 +28,12 @@ use stepscope_scenario::{
 
 /// Maximum bytes of all controllers' ticks together.
 const MAX_BYTES: usize = 8_000_000;
-/// Bit times of an exchange besides its bytes: the turnaround of the reply, and the pause after it.
+/// Bit times of an exchange besides its bytes: the turnaround before the reply, and the pause after it.
 const EXCHANGE_BITS: u128 = 11 + 10;
 /// Loads are counted in thousandths of a bit time.
 const PART_OF_BIT: u128 = 1000;
 
+/// The configuration, plans and ticks of one controller.
 #[derive(Clone, Debug)]
 pub(super) struct ControllerPlan {
     config: Config,
@@ -67,7 +68,7 @@ impl ControllerPlan {
     }
 }
 
-/// The plan of each axis of each controller; empty where the source is no motion.
+/// The plan of each axis of each controller; empty if the source is not a motion.
 pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
     let Source::Motion(motion) = &scenario.source else {
         return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
@@ -88,7 +89,7 @@ pub(super) fn controller_plans(
             Ok(mut ticks) => {
                 total += ticks.len();
                 if config.protocol() == Protocol::Framed {
-                    end_at_rest(&mut ticks, config.channels());
+                    end_without_steps(&mut ticks, config.channels());
                 }
                 debug_assert!(
                     ticks.len().is_multiple_of(config.channels().into()),
@@ -155,12 +156,12 @@ pub(super) fn segments(
     }
 }
 
-/// A framed job ends with a tick without steps, so that its end is no underrun.
-fn end_at_rest(ticks: &mut Vec<u8>, channels: u8) {
+/// Appends a tick without steps, so that the end of a framed job is not an underrun.
+fn end_without_steps(ticks: &mut Vec<u8>, channels: u8) {
     let last = ticks.chunks(usize::from(channels)).last();
     if let Some(last) = last.filter(|last| last.iter().any(|&byte| ChannelCommand::parse(byte).steps > 0)) {
-        let rest: Vec<u8> = last.iter().map(|byte| byte & 0x80).collect();
-        ticks.extend(rest);
+        let directions: Vec<u8> = last.iter().map(|byte| byte & !MAX_STEPS).collect();
+        ticks.extend(directions);
     }
 }
 
@@ -187,22 +188,24 @@ fn start(checked: &CheckedScenario) -> Instant {
 
 /// Packet j of all controllers in ascending address, back to back from start + j*M*Ts.
 fn paced(checked: &CheckedScenario, controllers: &[ControllerPlan]) -> Schedule {
-    let mut turn: Vec<Packets<'_>> = Vec::new();
+    let mut by_address: Vec<Packets<'_>> = Vec::new();
     for (index, plan) in controllers.iter().enumerate() {
         let packets = Packets::of(checked, index, plan);
         let address = plan.config.address();
-        turn.insert(turn.partition_point(|before| before.plan.config.address() <= address), packets);
+        by_address
+            .insert(by_address.partition_point(|before| before.plan.config.address() <= address), packets);
     }
-    let last = turn.iter().map(Packets::count).max().unwrap_or(0);
+    let count = by_address.iter().map(Packets::count).max().unwrap_or(0);
     let Some(first) = checked.configs.first() else { return Schedule::default() };
-    let joined = (0..last).map(|tick| {
-        let mut packet = Vec::with_capacity(turn.len() * (1 + MAX_CHANNELS));
-        turn.iter().for_each(|packets| packets.put(tick, &mut packet));
-        packet
+    let sends = (0..count).map(|tick| {
+        let mut bytes = Vec::with_capacity(by_address.len() * (1 + MAX_CHANNELS));
+        by_address.iter().for_each(|packets| packets.append(tick, &mut bytes));
+        bytes
     });
-    Schedule::paced(start(checked), first.tick(), joined)
+    Schedule::paced(start(checked), first.tick(), sends)
 }
 
+/// The packets of a controller: those of the scenario, or one per tick of its plan.
 struct Packets<'a> {
     plan: &'a ControllerPlan,
     given: Option<&'a [Hex]>,
@@ -224,7 +227,7 @@ impl<'a> Packets<'a> {
         self.given.map_or_else(|| self.plan.each_tick().len(), <[Hex]>::len)
     }
 
-    fn put(&self, index: usize, bytes: &mut Vec<u8>) {
+    fn append(&self, index: usize, bytes: &mut Vec<u8>) {
         if let Some(given) = self.given {
             bytes.extend_from_slice(given.get(index).map_or(&[], |packet| &packet.0));
             return;
@@ -238,8 +241,8 @@ impl<'a> Packets<'a> {
 }
 
 pub(super) fn jobs(controllers: &[ControllerPlan]) -> Vec<Job> {
-    let busy = controllers.iter().filter(|plan| plan.has_ticks());
-    busy.map(|plan| job(&plan.config, &plan.ticks)).collect()
+    let with_ticks = controllers.iter().filter(|plan| plan.has_ticks());
+    with_ticks.map(|plan| job(&plan.config, &plan.ticks)).collect()
 }
 
 pub(super) fn framed_host(checked: &CheckedScenario, controllers: &[ControllerPlan]) -> FramedHost {

@@ -1,8 +1,8 @@
-//! The maximum cost of a run, known before it starts (DESIGN A4).
+//! The maximum cost of a run, computed before it starts (DESIGN A4).
 //!
-//! Each received byte begins with a fall of the line, and the next one no earlier than floor(B/2) + 9*B + 1 cycles later.
-//! A receiver gets the sent bytes only if no level is forced and its samples lie in their bits; otherwise one byte can
-//! become several, and a forced level can begin another.
+//! Each received byte begins with a fall of the line, and the next one at least floor(B/2) + 9*B + 1 cycles later.
+//! A receiver gets exactly the sent bytes if no level is forced and it samples each bit within the bit. Otherwise one byte
+//! can become several, and a forced level can become a byte.
 
 use crate::controller_plan::{ControllerPlan, job, pulses};
 use stepscope_peripheral::{
@@ -19,35 +19,40 @@ use stepscope_peripheral::{
 use stepscope_scenario::{CheckedScenario, Noise, Source};
 
 /// Maximum edges of a byte on the line, and how many of them fall.
-const MAX_EDGES_A_BYTE: u64 = 10;
-const MAX_FALLS_A_BYTE: u64 = 5;
+const MAX_EDGES_PER_BYTE: u64 = 10;
+const MAX_FALLS_PER_BYTE: u64 = 5;
 /// The last possible fall: the start of data bit 7.
 const LAST_FALL_BIT: u64 = 8;
 
-/// Bits of a byte that has just begun and of the gap after it (45, A5), rounded up.
-const LONGEST_REST_BITS: u64 = 60;
+/// Bits of a byte that has just begun and of the gap after it (45), rounded up.
+const MAX_IDLE_BITS: u64 = 60;
 
+/// Bytes of a frame besides its ticks.
 const FRAME_OVERHEAD: u64 = 13;
 
 /// Maximum cost of a run; an estimate if the host waits for replies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
+    /// Trace records of all controllers.
     pub records: u64,
+    /// Sends of the host.
     pub sends: u64,
+    /// Bytes of the host.
     pub bytes: u64,
-    /// Cycle after which no change is possible, or the given end.
+    /// Cycle after which no event follows, or the given end.
     pub end_cycle: u64,
-    /// Steps of the grids of all plants, each times its motors; 0 without a plant.
+    /// Grid steps of all plants, multiplied by their motors; 0 without a plant.
     pub motor_steps: u64,
 }
 
-/// A plant runs up to this many motor-steps without a confirmation.
+/// Motor steps that run without a confirmation.
 pub const BUDGET_MOTOR_STEPS: u64 = 40_000_000;
 
-/// A scenario runs up to this many records without a confirmation.
+/// Records that run without a confirmation.
 pub const BUDGET_RECORDS: u64 = 4_000_000;
 
 impl Cost {
+    /// Whether a run needs a confirmation.
     pub const fn is_over_budget(&self) -> bool {
         self.records > BUDGET_RECORDS || self.motor_steps > BUDGET_MOTOR_STEPS
     }
@@ -58,7 +63,7 @@ impl Cost {
         } else {
             Sends::scheduled(checked, schedule)
         };
-        let edges = MAX_EDGES_A_BYTE * (sends.bytes + sends.reply_bytes) + 2 * checked.forced.len() as u64;
+        let edges = MAX_EDGES_PER_BYTE * (sends.bytes + sends.reply_bytes) + 2 * checked.forced.len() as u64;
         let records = controllers.iter().map(|plan| 1 + edges + tick_records(checked, plan, schedule)).sum();
         Self {
             records,
@@ -96,9 +101,7 @@ impl Cost {
         };
         Self { end_cycle, motor_steps, records: self.records + tests + overloads, ..self }
     }
-}
 
-impl Cost {
     pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
         let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
         Self { records: segments.max_records().min(end_cycle), sends: 0, bytes: 0, end_cycle, motor_steps: 0 }
@@ -123,11 +126,11 @@ impl Sends {
         Self { count: schedule.len() as u64, bytes, reply_bytes: replies * longest, end_cycle: 0 }
     }
 
-    /// Ticks, and STATUS and POSITIONS before and after them. Noise repeats frames, and a crashed host opens every
-    /// controller again: an estimate, not a bound.
+    /// Frames with ticks, and STATUS and POSITIONS before and after them. With noise this is an estimate, because frames are
+    /// repeated and a crashed host opens every controller again.
     fn framed(checked: &CheckedScenario, controllers: &[ControllerPlan]) -> Self {
-        let wrong = checked.noise != Noise::default() || !checked.forced.is_empty();
-        let tries = if wrong { u64::from(checked.host.max_attempts) } else { 1 };
+        let has_faults = checked.noise != Noise::default() || !checked.forced.is_empty();
+        let tries = if has_faults { u64::from(checked.host.max_attempts) } else { 1 };
         let repeats = tries * if checked.noise.host_crashes_ppm > 0 { controllers.len() as u64 } else { 1 };
         let mut sends = Self { count: 0, bytes: 0, reply_bytes: 0, end_cycle: 0 };
         for plan in controllers.iter().filter(|plan| plan.has_ticks()) {
@@ -142,8 +145,8 @@ impl Sends {
         }
         let bytes = (sends.bytes + sends.reply_bytes) / repeats;
         let clock_hz = controllers.first().map_or(1, |first| first.config().clock_hz());
-        // Line and ticks overlap, except for the first and the last exchange. How long a noisy line takes is unknown;
-        // most such jobs still end with their ticks.
+        // Line and ticks overlap, except for the first and the last exchange. On a noisy line, too, most jobs end with
+        // their ticks.
         sends.end_cycle = sends.end_cycle.max(line_time(bytes, clock_hz, checked.baud))
             + line_time(sends.bytes / sends.count.max(1) + 200, clock_hz, checked.baud);
         sends
@@ -189,7 +192,7 @@ fn max_ticks(checked: &CheckedScenario, config: &Config, schedule: &Schedule) ->
     received / config.packet_len() as u64
 }
 
-/// Whether each sample lies in its own bit, and the receiver is armed before the next byte.
+/// Whether each bit is sampled within the bit, and the receiver is ready before the next byte.
 fn gets_all_bits(config: &Config, baud: u32) -> bool {
     let (bit, sent) = (config.bit().0, BitTimes::new(config.clock_hz(), baud));
     (0..BYTE_BITS).all(|k| (sent.bit(k)..sent.bit(k + 1)).contains(&Cycles(bit / 2 + k * bit)))
@@ -201,7 +204,7 @@ fn max_received(checked: &CheckedScenario, config: &Config, bytes: usize) -> u64
     let Some(before) = bytes.checked_sub(1) else { return 0 };
     let Cycles(last_fall) =
         BitTimes::new(config.clock_hz(), checked.baud).bit(BYTE_BITS * before + LAST_FALL_BIT);
-    (MAX_FALLS_A_BYTE * bytes).min(last_fall / (bit / 2 + 9 * bit + 1) + 1)
+    (MAX_FALLS_PER_BYTE * bytes).min(last_fall / (bit / 2 + 9 * bit + 1) + 1)
 }
 
 /// Two records per pulse, or per slot where pulses coincide, and the changes of DIR.
@@ -215,7 +218,7 @@ fn records_of(config: &Config, pulses: u64) -> u64 {
     }
 }
 
-/// A cycle by which everything is sent, and a late byte, the running and queued ticks, or a reply and the gap are over.
+/// A cycle after all sends, a late byte, the running and queued ticks, and a reply with its gap.
 fn last_cycle(schedule: &Schedule, checked: &CheckedScenario, controllers: &[ControllerPlan]) -> u64 {
     let last = schedule.len().checked_sub(1).and_then(|index| schedule.get(index));
     let clock_hz = controllers.first().map_or(1, |first| first.config().clock_hz());
@@ -237,7 +240,7 @@ fn last_cycle(schedule: &Schedule, checked: &CheckedScenario, controllers: &[Con
         let is_framed = config.protocol() == Protocol::Framed;
         let reply = if is_framed { longest_reply(config) } else { NAK_LEN as u64 };
         let reply = line_time(reply, clock_hz, config.reply_baud());
-        ticks_end.max(sent + late + LONGEST_REST_BITS * config.bit().0 + reply)
+        ticks_end.max(sent + late + MAX_IDLE_BITS * config.bit().0 + reply)
     };
     controllers.iter().map(end).max().unwrap_or(sent) + 1
 }
@@ -286,7 +289,7 @@ mod tests {
                 );
             }
         }
-        // 16 cycles a bit; a receiver's 15 and 17 take a sample in the wrong bit.
+        // With 16 cycles per bit, receivers with 15 and 17 sample a wrong bit.
         for (receiver_baud, expected) in [(100, true), (97, true), (107, false), (95, false)] {
             let config = config(1600, 100, receiver_baud).expect("holds");
             assert_eq!(gets_all_bits(&config, 100), expected, "{receiver_baud}");
@@ -294,8 +297,8 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_receivers_tick_begins_after_the_byte_has_been_sent() {
-        // 10.4 cycles a bit are sent, 11 heard: the byte ends at 105 and is delivered there.
+    fn a_slow_receiver_begins_its_tick_after_the_byte() {
+        // The sender has 10.4 cycles per bit, the receiver 11: the byte ends at 105 and is delivered there.
         let json = r#"{"clock_hz":1000,"line":{"baud":96,"receiver_baud":94},
             "bus":{"self_test_cycles":0},"source":{"line":{"sends":[{"start_cycle":1,"bytes":"87"}]}}}"#;
         let experiment = Experiment::from_json(json).expect("runs");
@@ -305,8 +308,8 @@ mod tests {
     }
 
     #[test]
-    fn a_tick_that_came_late_behind_others_makes_all_that_follow_late() {
-        // Three controllers share the first turns of the line, then one has it for itself (found by `cargo xtask fuzz`).
+    fn a_late_tick_delays_all_later_ticks() {
+        // Two controllers share the line at first, then one has it for itself (found by `cargo xtask fuzz`).
         let json = r#"{"bus":{"channels":2},"line":{"address":9},"controllers":[
             {"address":3,"bus":{"channels":2},"axes":[{"moves":[
                 {"constant":{"distance":{"steps":-19},"speed":{"steps_s":500}}}]}]},
@@ -315,7 +318,7 @@ mod tests {
                 {"constant":{"distance":{"steps":40},"speed":{"steps_s":1000}}}]}]}}}"#;
         let experiment = Experiment::from_json(json).expect("runs");
         assert_eq!(experiment.run(&mut vec![]).cycles().0, 649_867);
-        assert_eq!(experiment.cost().end_cycle, 649_934, "647 106 were announced");
+        assert_eq!(experiment.cost().end_cycle, 649_934, "an estimate without the delay is 647 106");
     }
 
     #[test]
@@ -349,6 +352,6 @@ mod tests {
         let json = r#"{"line":{"sends":[{"bytes":"5555"}]}}"#;
         scenario.source = stepscope_scenario::part_from_json(json).expect("reads");
         let records = Experiment::new(&scenario).expect("runs").cost().records;
-        assert_eq!(records, 1 + 2 * 10 + 10 * 255, "every fall of the line may begin a byte");
+        assert_eq!(records, 1 + 2 * 10 + 10 * 255, "each fall of the line may begin a byte");
     }
 }

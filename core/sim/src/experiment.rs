@@ -30,14 +30,28 @@ const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
 const MAX_MOTOR_STEPS: u64 = 10_000_000_000;
 
 /// A validated scenario with planned motions and encoded packets.
+///
+/// ```
+/// use stepscope_peripheral::signal::Record;
+/// use stepscope_sim::Experiment;
+///
+/// let experiment = Experiment::from_json(r#"{ "source": { "packets": { "packets": ["83", "02"] } } }"#)?;
+/// let mut trace: Vec<Record> = Vec::new(); // or your own `Sink`
+/// let run = experiment.run(&mut trace);
+/// assert_eq!(run.positions()[0], 3 - 2);
+///
+/// let problems = Experiment::from_json(r#"{ "bus": { "slots": 0 } }"#).unwrap_err();
+/// assert_eq!(problems[0].path, "bus.slots");
+/// # Ok::<(), Vec<stepscope_scenario::Problem>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Experiment {
     checked: CheckedScenario,
     /// Invariant: one at least, the scenario's own first.
     controllers: Vec<ControllerPlan>,
-    /// Sent without waiting for replies.
+    /// What the host sends without waiting for replies.
     schedule: Rc<Schedule>,
-    /// Only where segments run the scenario; then nothing is sent.
+    /// `None` unless segments run the scenario; then nothing is sent.
     segments: Option<Rc<CheckedSegments>>,
     line_load: Option<f64>,
     cost: Cost,
@@ -65,8 +79,8 @@ impl Experiment {
         let Some(plans) = plans else { return Err(problems) };
         let controllers = match controller_plan::controller_plans(&checked, plans) {
             Ok(controllers) if problems.is_empty() => controllers,
-            validated => {
-                problems.extend(validated.err().unwrap_or_default());
+            result => {
+                problems.extend(result.err().unwrap_or_default());
                 return Err(problems);
             }
         };
@@ -96,8 +110,8 @@ impl Experiment {
         Self::of_lenient(&scenario, unread)
     }
 
-    /// Validates a scenario with unreadable fields: they have their defaults, and rules about several fields wait.
-    /// Errors: `unread` and all other problems.
+    /// Validates a scenario whose unreadable fields, in `unread`, have their defaults. Rules about several fields are not
+    /// checked then. Errors: `unread` and all other problems.
     pub fn of_lenient(scenario: &Scenario, unread: Vec<Problem>) -> Result<Self, Vec<Problem>> {
         let validated = Self::new(scenario);
         if unread.is_empty() {
@@ -125,7 +139,7 @@ impl Experiment {
         self.controllers.iter().map(ControllerPlan::config)
     }
 
-    /// The host's rate.
+    /// The host's bit rate.
     pub const fn baud(&self) -> u32 {
         self.checked.baud
     }
@@ -159,8 +173,8 @@ impl Experiment {
     /// wait for replies.
     pub fn conversation(&self, start: Instant) -> Option<Conversation> {
         let bit = Config::bit_of(self.config().clock_hz(), self.baud());
-        let jobs = || controller_plan::jobs(&self.controllers);
         let waits = self.checked.waits_for_replies();
+        let jobs = || controller_plan::jobs(&self.controllers);
         waits.then(|| Conversation::new(jobs(), &self.checked.host, bit, start).with_opening_tick())
     }
 
@@ -190,6 +204,7 @@ impl Experiment {
         !has_end && self.stand_alone().is_some_and(crate::stand_alone::jogs_without_end)
     }
 
+    /// The stand-alone controllers; `None` with another source.
     pub const fn stand_alone(&self) -> Option<&stepscope_controller::CheckedSetup> {
         self.checked.stand_alone.as_ref()
     }
@@ -204,6 +219,7 @@ impl Experiment {
         }
     }
 
+    /// The maximum cost of a run.
     pub const fn cost(&self) -> Cost {
         self.cost
     }
@@ -213,7 +229,7 @@ impl Experiment {
         self.line_load
     }
 
-    /// A run before cycle 0.
+    /// Starts a run: it is before cycle 0.
     pub fn start(&self) -> Run {
         let CheckedScenario { baud, forced, run, .. } = &self.checked;
         let clock_hz = self.config().clock_hz();
@@ -234,6 +250,7 @@ impl Experiment {
         if tests { Device::with_self_test(config) } else { Device::new(config) }
     }
 
+    /// The plants of the controllers.
     pub const fn plants(&self) -> Option<&stepscope_scenario::Plants> {
         self.checked.plants.as_ref()
     }
@@ -244,7 +261,7 @@ impl Experiment {
             .then(|| controller_plan::framed_host(&self.checked, &self.controllers))
     }
 
-    /// Runs to the end; `sink` takes the trace of the first controller.
+    /// Runs to the end; `sink` receives the trace of the first controller.
     pub fn run(&self, sink: &mut impl Sink) -> Run {
         self.run_each(slice::from_mut(sink))
     }
@@ -259,7 +276,7 @@ impl Experiment {
         run
     }
 
-    /// Runs to the end clock by clock: slow, the reference of [`Self::run`].
+    /// Runs to the end clock by clock. It is slow, and the reference for [`Self::run`].
     pub fn run_clock_by_clock(&self, sink: &mut impl Sink) -> Run {
         self.run_each_clock_by_clock(slice::from_mut(sink))
     }

@@ -1,18 +1,21 @@
-//! An experiment: a scenario that is validated once, planned once, and run (DESIGN A2, A9).
+//! Runs scenarios: an [`Experiment`] is a scenario that is validated and planned once (DESIGN A2, A9).
+//!
+//! [`Run`] is a run in progress. [`framed_host`] and [`raw_host`] send a scenario to real controllers, [`session`] simulates
+//! controllers for a real host, and [`fault_sweep`] and [`power_cut`] inject faults.
 //!
 //! ```
 //! use stepscope_peripheral::trace::Digest;
 //! use stepscope_scenario::Scenario;
 //! use stepscope_sim::Experiment;
 //!
-//! let scenario = Scenario::from_json(r#"{ "title": "the default motion" }"#).expect("reads");
-//! let experiment = Experiment::new(&scenario).expect("has no problems");
+//! let scenario = Scenario::from_json(r#"{ "title": "the default motion" }"#).expect("valid JSON");
+//! let experiment = Experiment::new(&scenario).expect("no problems");
 //! let mut digest = Digest::default();
 //! let run = experiment.run(&mut digest);
-//! assert_eq!(run.device().positions()[0], 3200);
+//! assert_eq!(run.positions()[0], 3200); // one turn
+//! assert_eq!(digest.records(), 13_201); // digest of all edges
 //! ```
 #![cfg_attr(not(test), no_std)]
-#![allow(missing_docs, reason = "a name with its unit needs no comment that repeats it")]
 
 extern crate alloc;
 

@@ -11,7 +11,7 @@ use stepscope_peripheral::{
 use stepscope_scenario::{Cause, END_OF_TIME, Problem};
 
 impl Cost {
-    /// Tries the run up to the budget: it has no closed form. Errors: too many groups begin.
+    /// Runs the controllers up to the budget, because their cost has no closed form. Errors: too many groups begin.
     pub(crate) fn of_stand_alone(
         controllers: &CheckedSetup,
         run: Option<Cycles>,
@@ -24,7 +24,7 @@ impl Cost {
             let path = format!("source.standalone[{}].groups", work.controller);
             return Err(vec![Problem::new(path, Cause::TooManyGroups(work))]);
         }
-        // An aborted trial does not show the end.
+        // The end is unknown if the trial was aborted.
         let records = if is_short { counted.0 } else { counted.0.max(BUDGET_RECORDS + 1) };
         let end_cycle = match run {
             Some(Cycles(run)) => run,
@@ -60,17 +60,23 @@ impl Sink for Counted {
 /// All stand-alone controllers of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StandAloneSummary {
+    /// One per controller.
     pub panels: Vec<PanelSummary>,
+    /// Digest of all panel records.
     pub digest: u64,
-    pub work: Option<TooManyGroups>,
+    /// Why the run ended, if too many groups began.
+    pub too_many_groups: Option<TooManyGroups>,
 }
 
 /// Ignored presses listed one by one.
 const MAX_LISTED: usize = 20;
 
+/// One stand-alone controller at the end of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PanelSummary {
+    /// Its state.
     pub state: State,
+    /// Reason for the state ALARM.
     pub alarm: Alarm,
     /// Trust: 0 LOST, 1 HELD, 2 SURE.
     pub trust: u8,
@@ -78,9 +84,11 @@ pub struct PanelSummary {
     pub position: i32,
     /// Distance of the axis from that position, in steps.
     pub axis_error: i64,
+    /// Panel records.
     pub records: usize,
     /// Writes of the most worn cell of its memory.
     pub most_writes: u32,
+    /// Presses that had no effect.
     pub ignored: Vec<Press>,
 }
 
@@ -101,7 +109,7 @@ impl StandAloneSummary {
         Self {
             panels: (0..).map_while(one).collect(),
             digest: machine.panel_digest(),
-            work: machine.too_many_groups(),
+            too_many_groups: machine.too_many_groups(),
         }
     }
 }
@@ -137,6 +145,7 @@ impl fmt::Display for StandAloneSummary {
             }
         }
         writeln!(f, "panels {:016x}", self.digest)?;
-        self.work.map_or(Ok(()), |work| writeln!(f, "ended controller {}: {work}", work.controller))
+        self.too_many_groups
+            .map_or(Ok(()), |error| writeln!(f, "ended controller {}: {error}", error.controller))
     }
 }

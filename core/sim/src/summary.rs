@@ -4,14 +4,14 @@
 //!
 //! ```text
 //! cycles 6401602
-//! records 13201                     of each controller, of several below `controller 0`, `controller 1`, …
+//! records 13201                     per controller; with several, below `controller 0`, `controller 1`, …
 //! ticks_done 200
 //! positions 3200
 //! faults 0x0000 none
 //! state READY seq 0 free 16         on a framed line
-//! host done                         where the host has ticks for the controller
+//! host done                         if the host has ticks for the controller
 //! frames 52 repeated 0 …            the host of a framed line
-//! line_load 43.4 %                  where something paced is sent
+//! line_load 43.4 %                  if the host sends ticks
 //! panel 0 READY position 17233 …    each stand-alone controller
 //! panels 0123456789abcdef           digest of their records (CONTROLLER.md G8)
 //! ```
@@ -32,8 +32,9 @@ use stepscope_peripheral::{
 
 /// A run so far.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names are those of the text")]
 pub struct Summary {
-    /// Whether the line speaks the framed protocol.
+    /// Whether the line uses the framed protocol.
     pub framed: bool,
     pub cycles: Cycles,
     pub clock_hz: u32,
@@ -48,6 +49,7 @@ pub struct Summary {
 
 /// One controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names are those of the text")]
 pub struct ControllerSummary {
     pub address: Option<u8>,
     pub channels: u8,
@@ -64,6 +66,7 @@ pub struct ControllerSummary {
 
 /// The host's job with one controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names are those of the text")]
 pub struct JobSummary {
     pub ticks: usize,
     pub acknowledged: u32,
@@ -71,8 +74,7 @@ pub struct JobSummary {
 }
 
 impl Summary {
-    /// `digests` of the traces are in the order of the scenario.
-    #[must_use]
+    /// The summary of a run; `digests` of the traces are in the order of the scenario.
     pub fn new<'a>(
         experiment: &Experiment,
         run: &Run,
@@ -95,7 +97,6 @@ impl Summary {
     }
 
     /// The summary of one controller, if it exists.
-    #[must_use]
     pub fn only(mut self, controller: usize) -> Self {
         self.controllers = self.controllers.into_iter().skip(controller).take(1).collect();
         self

@@ -17,16 +17,18 @@ pub struct ValidatedScenario {
 /// An axis with its plan and its bus.
 #[derive(Clone, Copy, Debug)]
 pub struct SelectedAxis<'a> {
+    /// The whole scenario.
     pub scenario: &'a Scenario,
     /// The bus of the controller that the axis belongs to.
     pub bus: &'a Bus,
+    /// The axis.
     pub axis: &'a Axis,
+    /// Its plan.
     pub plan: &'a AxisPlan,
 }
 
 impl ValidatedScenario {
     /// Reads and validates a text. A field that cannot be read has its default.
-    #[must_use]
     pub fn from_json(text: &str) -> Self {
         let (scenario, unread) = Scenario::from_json_lenient(text);
         Self::of(scenario, unread)
@@ -37,6 +39,7 @@ impl ValidatedScenario {
         Self { scenario: Rc::new(scenario), unread: unread.into(), result }
     }
 
+    /// The scenario.
     pub const fn scenario(&self) -> &Rc<Scenario> {
         &self.scenario
     }
@@ -46,16 +49,17 @@ impl ValidatedScenario {
         &self.unread
     }
 
-    /// Errors: every problem of the scenario, each with its path.
+    /// The experiment to run. Errors: every problem of the scenario, each with its path.
     pub fn experiment(&self) -> Result<&Rc<Experiment>, &[Problem]> {
         self.result.as_ref().map_err(|problems| &**problems)
     }
 
+    /// All problems; empty if the scenario is valid.
     pub fn problems(&self) -> &[Problem] {
         self.result.as_ref().err().map_or(&[], |problems| &**problems)
     }
 
-    /// `None` if there is no such axis or the scenario has problems.
+    /// An axis with its plan; `None` if it does not exist or the scenario has problems.
     pub fn axis(&self, controller: usize, axis: usize) -> Option<SelectedAxis<'_>> {
         let plan = self.experiment().ok()?.plans_of(controller).get(axis)?;
         let scenario = &*self.scenario;
@@ -70,8 +74,7 @@ impl From<Scenario> for ValidatedScenario {
     }
 }
 
-/// `None` if there is no such controller.
-#[must_use]
+/// The bus of a controller; `None` if it does not exist.
 pub fn bus_of(scenario: &Scenario, controller: usize) -> Option<&Bus> {
     match controller.checked_sub(1) {
         None => Some(&scenario.bus),
@@ -79,8 +82,7 @@ pub fn bus_of(scenario: &Scenario, controller: usize) -> Option<&Bus> {
     }
 }
 
-/// Empty if the source is not a motion.
-#[must_use]
+/// The axes of a controller; empty if the source is not a motion.
 pub fn axes_of(scenario: &Scenario, controller: usize) -> &[Axis] {
     match (&scenario.source, controller.checked_sub(1)) {
         (Source::Motion(motion), None) => &motion.axes,

@@ -5,6 +5,18 @@
 //! ```
 //!
 //! Every run of a seed has the same faults and the same result. The sum of tallies does not depend on the order of seeds.
+//!
+//! ```
+//! use stepscope_peripheral::config::Protocol;
+//! use stepscope_sim::fault_sweep::{FaultSweep, Tally};
+//!
+//! let sweep = FaultSweep::new(FaultSweep::small(Protocol::Framed)).expect("no problems");
+//! let mut sum = Tally::default();
+//! for seed in 0..3 {
+//!     sum += sweep.run(seed).expect("no problems");
+//! }
+//! assert_eq!((sum.seeds, sum.wrong_seeds), (3, 0)); // the framed protocol executes no wrong tick
+//! ```
 
 mod align;
 mod tally;
@@ -32,16 +44,18 @@ const OCTAVES: u64 = 6;
 
 /// Deviation from the host's rate, in thousandths, up to which receivers get all bytes.
 pub const IN_REACH: u64 = 40;
-/// From 52 on no frame gets through.
-const OUT_OF_REACH: u64 = 60;
+/// Maximum deviation that is drawn. From 52 on no frame gets through.
+const MAX_DEVIATION: u64 = 60;
 
+/// The commands of a scenario under random line faults.
 #[derive(Clone, Debug)]
 pub struct FaultSweep {
     base: Scenario,
 }
 
 impl FaultSweep {
-    /// A seed replaces the noise and the receiver rates of `base`. Errors: every problem, and a source without ticks.
+    /// A sweep whose seeds replace the noise and the receiver rates of `base`. Errors: every problem, and a source without
+    /// ticks.
     pub fn new(base: Scenario) -> Result<Self, Vec<Problem>> {
         let experiment = Experiment::new(&base)?;
         if (0..experiment.controllers()).all(|index| experiment.ticks_of(index).is_empty()) {
@@ -52,7 +66,6 @@ impl FaultSweep {
     }
 
     /// A small scenario: two motors turn in opposite directions for 40 ticks.
-    #[must_use]
     pub fn small(protocol: Protocol) -> Scenario {
         let axis = |steps, ramp_s| {
             let cosine =
@@ -99,9 +112,9 @@ impl FaultSweep {
         let clocks_differ = draw == KINDS || is_mixture && random.below(2) == 0;
         if clocks_differ {
             let baud = scenario.line.baud;
-            scenario.line.receiver_baud = Some(off(baud, &mut random));
+            scenario.line.receiver_baud = Some(deviating_rate(baud, &mut random));
             for controller in &mut scenario.controllers {
-                controller.receiver_baud = Some(off(baud, &mut random));
+                controller.receiver_baud = Some(deviating_rate(baud, &mut random));
             }
         }
         scenario
@@ -117,8 +130,8 @@ impl FaultSweep {
     }
 }
 
-fn off(baud: u32, random: &mut Random) -> u32 {
-    let max = if random.below(8) == 0 { OUT_OF_REACH } else { IN_REACH };
+fn deviating_rate(baud: u32, random: &mut Random) -> u32 {
+    let max = if random.below(8) == 0 { MAX_DEVIATION } else { IN_REACH };
     let thousandths = 1000 - max + random.below(2 * max + 1);
     (u64::from(baud) * thousandths / 1000) as u32
 }
@@ -166,11 +179,11 @@ fn tally(scenario: &Scenario, experiment: &Experiment, run: &Run, watches: &[Wat
 #[cfg(test)]
 mod tests {
     #[test]
-    fn a_seed_is_always_the_same_run() {
+    fn a_seed_always_has_the_same_tally() {
         use crate::fault_sweep::FaultSweep;
         use stepscope_peripheral::config::Protocol;
 
-        let sweep = FaultSweep::new(FaultSweep::small(Protocol::Framed)).expect("it orders ticks");
-        assert_eq!(sweep.run(3), sweep.run(3)); // a seed is a run
+        let sweep = FaultSweep::new(FaultSweep::small(Protocol::Framed)).expect("it commands ticks");
+        assert_eq!(sweep.run(3), sweep.run(3));
     }
 }

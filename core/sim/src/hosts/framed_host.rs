@@ -7,8 +7,8 @@
 //!                     └── no reply in time: the same frame again, after a delimiter
 //! ```
 //!
-//! [`Conversation`] implements the policy in bytes and cycles, for real lines too. This file puts it on the simulated line, with
-//! its noise.
+//! [`Conversation`] implements the protocol in bytes and cycles, for real lines, too. [`FramedHost`] connects it to the simulated
+//! line with its noise.
 
 mod conversation;
 mod peer;
@@ -19,7 +19,7 @@ mod tick_sums;
 
 pub use conversation::{Conversation, Counts};
 pub use peer::{GivenUp, Job, Known, Progress};
-pub use report::{Report, ReportRow, Standing, for_real_line};
+pub use report::{HostStatus, Report, ReportRow, for_real_line};
 
 use crate::line::noise::Noise;
 use alloc::{vec, vec::Vec};
@@ -37,6 +37,7 @@ struct Sending {
     crashes: bool,
 }
 
+/// The host of a simulated framed line.
 #[derive(Clone, Debug)]
 pub struct FramedHost {
     clock_hz: u32,
@@ -45,14 +46,13 @@ pub struct FramedHost {
     conversation: Conversation,
     sending: Option<Sending>,
     receiver: Receiver,
-    received: bool,
+    received_level: bool,
     noise: Option<Noise>,
-    last: Instant,
+    last_active: Instant,
 }
 
 impl FramedHost {
     /// A host that begins in cycle `start`. `bit` is the bit time of its receiver.
-    #[must_use]
     pub fn new(
         jobs: Vec<Job>,
         settings: &Settings,
@@ -67,36 +67,40 @@ impl FramedHost {
             conversation: Conversation::new(jobs, settings, bit, start),
             sending: None,
             receiver: Receiver::new(bit),
-            received: true,
+            received_level: true,
             noise,
-            last: Instant::RESET,
+            last_active: Instant::RESET,
         }
     }
 
+    /// The state of the protocol.
     pub const fn conversation(&self) -> &Conversation {
         &self.conversation
     }
 
+    /// Progress of each job.
     pub fn progress(&self) -> impl Iterator<Item = Progress> {
         self.conversation.progress()
     }
 
-    /// Ticks that each controller has acknowledged.
+    /// Acknowledged ticks of each job.
     pub fn acknowledged(&self) -> impl Iterator<Item = u32> {
         self.conversation.acknowledged()
     }
 
+    /// Counts of frames and replies.
     pub const fn counts(&self) -> Counts {
         self.conversation.counts()
     }
 
+    /// Whether all jobs are done or given up.
     pub fn is_over(&self) -> bool {
         self.conversation.is_over()
     }
 
-    /// The last cycle in which it did something.
+    /// The last cycle with an event.
     pub const fn last_active(&self) -> Instant {
-        self.last
+        self.last_active
     }
 
     /// Whether it is sending in cycle `now`; then it receives nothing.
@@ -104,33 +108,33 @@ impl FramedHost {
         self.sending.is_some_and(|sending| now < sending.end)
     }
 
-    /// Next cycle after `now` in which it acts while the level is constant; [`Instant::NEVER`] when it has finished.
+    /// The next cycle after `now` with an event while the level is constant; [`Instant::NEVER`] at the end.
     pub fn deadline(&self, now: Instant) -> Instant {
         match self.sending {
             Some(Sending { end, .. }) => end,
             None if self.conversation.is_waiting() => {
-                self.conversation.deadline().min(self.receiver.deadline(now, self.received))
+                self.conversation.deadline().min(self.receiver.deadline(now, self.received_level))
             }
             None => self.conversation.deadline(),
         }
     }
 
-    /// Cycle `now`, in which it receives `level`.
+    /// Runs cycle `now`, in which it receives `level`.
     pub fn clock(&mut self, now: Instant, level: bool, line: &mut Line) {
-        self.received = level;
+        self.received_level = level;
         if self.conversation.is_waiting()
             && let Some(RxEvent::Byte(byte)) = self.receiver.clock(now, level)
         {
-            self.last = now;
+            self.last_active = now;
             self.receive(byte, now);
         }
         if let Some(Sending { end, crashes }) = self.sending {
             if end <= now {
-                (self.last, self.sending) = (now, None);
+                (self.last_active, self.sending) = (now, None);
                 self.sent(now, crashes);
             }
         } else if self.conversation.deadline() <= now {
-            self.last = now;
+            self.last_active = now;
             if let Some(bytes) = self.conversation.poll(now) {
                 self.send(now, bytes, line);
             }
@@ -141,9 +145,9 @@ impl FramedHost {
         let start = now.next();
         let mut crashes = false;
         if let Some(noise) = &mut self.noise {
-            let spoiled = noise.send(start, &bytes);
-            (bytes, crashes) = (spoiled.bytes, spoiled.crashes);
-            if let Some(forced) = spoiled.forced {
+            let corrupted = noise.send(start, &bytes);
+            (bytes, crashes) = (corrupted.bytes, corrupted.crashes);
+            if let Some(forced) = corrupted.forced {
                 line.force(forced);
             }
         }
@@ -165,7 +169,7 @@ impl FramedHost {
         let Self { conversation, noise, .. } = self;
         let received = noise.as_mut().map_or_else(|| vec![byte], |noise| noise.receive(byte));
         for byte in received {
-            conversation.receive_unless(byte, now, || noise.as_mut().is_some_and(Noise::misses));
+            conversation.receive_unless(byte, now, || noise.as_mut().is_some_and(Noise::misses_reply));
         }
     }
 }

@@ -1,11 +1,11 @@
-//! The host of a raw line against the wall clock (LIVE H3, H4): packets are paced, and nothing is verified.
+//! The host of a raw line in real time (LIVE H3, H4): packets are paced, and nothing is verified.
 //!
 //! ```text
 //! packet j is due at t0 + (its cycle - the first one's)/clock_hz - lead*M*Ts/clock_hz, or at once where that is before t0
 //! ```
 //!
-//! A late packet is sent at once. The lead is the maximum delay of a write before the queue runs dry. Times are
-//! nanoseconds since t0.
+//! A late packet is sent immediately. The lead is the maximum delay of a write before the controller's queue is empty. Times
+//! are nanoseconds since t0.
 
 use crate::{Experiment, lateness::Lateness};
 use alloc::{
@@ -25,18 +25,14 @@ const MAX_DEPTH: u64 = u8::MAX as u64;
 
 /// Why packets cannot be paced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum NotPaced {
+    /// The scenario has no packets.
     Nothing,
-    /// The queue takes fewer packets ahead.
-    Overflow {
-        depth: u8,
-    },
-    /// The queue does not hold the requested lead.
-    Short {
-        slack_ns: u64,
-        tick_ns: u64,
-        depth: u8,
-    },
+    /// The queue is too short for this number of packets ahead.
+    Overflow { lead: u8, depth: u8 },
+    /// The queue is too short for the requested lead.
+    Short { slack_ns: u64, tick_ns: u64, depth: u8 },
 }
 
 fn ms(ns: u64) -> f64 {
@@ -46,16 +42,19 @@ fn ms(ns: u64) -> f64 {
 impl fmt::Display for NotPaced {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Nothing => out.write_str("the scenario sends nothing"),
-            Self::Overflow { depth } => {
-                write!(out, "the queue has {depth} entries; use fewer, so that none overflows")
+            Self::Nothing => {
+                out.write_str("the scenario sends no packets; use a motion or packets as the source")
+            }
+            Self::Overflow { lead, depth } => {
+                let max = depth.saturating_sub(1);
+                write!(out, "a lead of {lead} packets does not fit in a queue of {depth}; use 0 to {max}")
             }
             Self::Short { slack_ns, tick_ns, depth } => {
                 let needed = slack_ns.div_ceil(tick_ns.max(1));
                 let held = u64::from(depth.saturating_sub(1));
                 write!(
                     out,
-                    "a lead of {} ms is {needed} ticks of {} ms ahead, and the queue of {depth} takes {held}, {} ms",
+                    "a lead of {} ms needs {needed} ticks of {} ms in the queue, but a queue of {depth} holds {held} ({} ms)",
                     ms(slack_ns),
                     ms(tick_ns),
                     ms(held * tick_ns)
@@ -63,34 +62,52 @@ impl fmt::Display for NotPaced {
                 let longer = slack_ns.checked_div(held).map(|ns| ms(ns + 999));
                 match (longer, needed < MAX_DEPTH) {
                     (Some(longer), true) => {
-                        write!(out, "; give ticks of {longer} ms or a queue of {}", needed + 1)
+                        write!(out, "; use ticks of {longer} ms or a queue of {}", needed + 1)
                     }
-                    (Some(longer), false) => write!(out, "; give ticks of {longer} ms"),
-                    (None, _) => write!(out, "; give a queue of {}", (needed + 1).min(MAX_DEPTH)),
+                    (Some(longer), false) => write!(out, "; use ticks of {longer} ms"),
+                    (None, _) => write!(out, "; use a queue of {}", (needed + 1).min(MAX_DEPTH)),
                 }
             }
         }
     }
 }
 
-/// Model of the controller's queue: a tick begins when its packet has arrived and the tick before has ended.
+/// Model of the controller's queue: a tick begins when its packet has arrived and the previous tick has ended.
 #[derive(Clone, Copy, Debug)]
 struct QueueModel {
     tick_ns: u64,
+    /// When the line is free.
     free_ns: u64,
+    /// End of the last queued tick.
     end_ns: Option<u64>,
 }
 
 impl QueueModel {
-    /// Sends a packet that takes `takes_ns`; returns whether the motor stopped before its tick.
-    fn packet(&mut self, at_ns: u64, takes_ns: u64) -> bool {
-        self.free_ns = self.free_ns.max(at_ns) + takes_ns;
-        let standstills = self.end_ns.is_some_and(|end| end < self.free_ns);
+    /// Sends a packet of this duration; returns whether the motor stopped before its tick.
+    fn packet(&mut self, at_ns: u64, duration_ns: u64) -> bool {
+        self.free_ns = self.free_ns.max(at_ns) + duration_ns;
+        let has_stopped = self.end_ns.is_some_and(|end| end < self.free_ns);
         self.end_ns = Some(self.end_ns.unwrap_or(0).max(self.free_ns) + self.tick_ns);
-        standstills
+        has_stopped
     }
 }
 
+/// Paces the packets of an experiment for a real port.
+///
+/// ```
+/// use stepscope_sim::{Experiment, raw_host::RawHost};
+///
+/// let experiment = Experiment::from_json(r#"{ "line": { "protocol": "raw" } }"#).expect("no problems");
+/// let mut host = RawHost::with_slack(&experiment, 20_000_000).expect("the queue holds 20 ms");
+/// let mut now_ns = 0;
+/// while let Some(due_ns) = host.due_ns() {
+///     now_ns = now_ns.max(due_ns); // wait until then
+///     let packet = host.packet(now_ns).expect("due"); // write it to your port
+///     assert!(!packet.is_empty());
+///     host.written(now_ns);
+/// }
+/// assert_eq!(host.report(false).standstill_count, 0);
+/// ```
 #[derive(Clone, Debug)]
 pub struct RawHost {
     schedule: Schedule,
@@ -106,11 +123,11 @@ pub struct RawHost {
 }
 
 impl RawHost {
-    /// Paces an experiment's packets, the first `lead` of them ahead. Errors: nothing to send, or too short a queue.
+    /// A host that sends each packet `lead` ticks ahead. Errors: no packets, or a queue that is too short.
     pub fn new(experiment: &Experiment, lead: u8) -> Result<Self, NotPaced> {
         let depth = depth(experiment);
         if lead > 0 && lead >= depth {
-            return Err(NotPaced::Overflow { depth });
+            return Err(NotPaced::Overflow { lead, depth });
         }
         let schedule = experiment.schedule().clone();
         let first = schedule.get(0).ok_or(NotPaced::Nothing)?.start;
@@ -130,8 +147,8 @@ impl RawHost {
         })
     }
 
-    /// As [`Self::new`] with the minimum lead of at least `slack_ns`: after a stop the controller still runs all of it.
-    /// Errors: nothing to send, or too short a queue.
+    /// As [`Self::new`], with the minimum lead of at least `slack_ns`. After a stop the controller still runs the lead.
+    /// Errors: no packets, or a queue that is too short.
     pub fn with_slack(experiment: &Experiment, slack_ns: u64) -> Result<Self, NotPaced> {
         if experiment.schedule().is_empty() {
             return Err(NotPaced::Nothing);
@@ -148,7 +165,7 @@ impl RawHost {
         self.lead
     }
 
-    /// Maximum delay of a write before the queue runs dry.
+    /// Maximum delay of a write before the queue is empty.
     pub fn slack_ns(&self) -> u64 {
         u64::from(self.lead) * self.queue.tick_ns
     }
@@ -165,11 +182,12 @@ impl RawHost {
         self.schedule.get(self.sent).map(|next| next.bytes)
     }
 
+    /// Reports that the next packet was written.
     pub fn written(&mut self, at_ns: u64) {
         let (Some(due), Some(packet)) = (self.due_ns(), self.schedule.get(self.sent)) else { return };
         self.late.add(at_ns.saturating_sub(due));
-        let takes = line_time(packet.bytes.len() as u64, self.clock_hz, self.baud);
-        if self.queue.packet(at_ns, nanos(takes, self.clock_hz)) {
+        let duration = line_time(packet.bytes.len() as u64, self.clock_hz, self.baud);
+        if self.queue.packet(at_ns, nanos(duration, self.clock_hz)) {
             self.standstill_count += 1;
             if self.standstills.len() < MAX_NAMED {
                 self.standstills.push(self.sent);
@@ -183,7 +201,7 @@ impl RawHost {
         self.queue.end_ns.unwrap_or(0).saturating_sub(now_ns)
     }
 
-    /// `stopped`: the host was stopped.
+    /// The report so far; `stopped` if the host was stopped.
     pub fn report(&self, stopped: bool) -> RawReport {
         RawReport {
             packets: self.schedule.len(),
@@ -200,7 +218,7 @@ fn depth(experiment: &Experiment) -> u8 {
     experiment.configs().map(stepscope_peripheral::config::Config::queue_depth).min().unwrap_or(0)
 }
 
-/// Rounded up: a reported standstill must have happened.
+/// Rounded up, so that a reported standstill is certain.
 fn tick_ns(experiment: &Experiment) -> u64 {
     let config = experiment.config();
     let ns = (u128::from(config.tick().0) * 1_000_000_000).div_ceil(config.clock_hz().max(1).into());
@@ -211,8 +229,9 @@ fn nanos(cycles: u64, clock_hz: u32) -> u64 {
     (u128::from(cycles) * 1_000_000_000 / u128::from(clock_hz)) as u64
 }
 
-/// The outcome of raw packets. They have no replies, so nothing is confirmed.
+/// The report about raw packets. They have no replies, so nothing is confirmed.
 #[derive(Clone, Debug)]
+#[allow(missing_docs, reason = "the names say what is counted")]
 pub struct RawReport {
     pub packets: usize,
     pub sent: usize,
@@ -224,7 +243,8 @@ pub struct RawReport {
 }
 
 impl RawReport {
-    pub fn standing(&self) -> String {
+    /// The status line.
+    pub fn status(&self) -> String {
         format!("{} of {} packets, late{}", self.sent, self.packets, self.late)
     }
 }
@@ -277,7 +297,7 @@ mod tests {
         }
     }
 
-    /// Ticks so long, and a queue.
+    /// Ticks of this length, and a queue.
     fn experiment(tick_ms: u32, depth: u32) -> Experiment {
         Experiment::new(&scenario(tick_ms, depth)).expect("it has no problems")
     }
@@ -303,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn packets_are_due_by_their_ticks_but_for_the_lead() {
+    fn packets_are_due_by_their_ticks_minus_the_lead() {
         const MS: u64 = 1_000_000;
         for (lead, due) in [(0, [0, 10, 20, 30, 40]), (1, [0, 0, 10, 20, 30]), (3, [0, 0, 0, 0, 10])] {
             let mut host = RawHost::new(&experiment(10, 4), lead).expect("the queue takes it");
@@ -387,27 +407,27 @@ mod tests {
             (
                 10,
                 20,
-                "20 ticks of 10 ms ahead, and the queue of 20 takes 19, 190 ms; give ticks of 10.527 ms or a queue of 21",
+                "20 ticks of 10 ms in the queue, but a queue of 20 holds 19 (190 ms); use ticks of 10.527 ms or a queue of 21",
             ),
             (
                 1,
                 200,
-                "200 ticks of 1 ms ahead, and the queue of 200 takes 199, 199 ms; give ticks of 1.006 ms or a queue of 201",
+                "200 ticks of 1 ms in the queue, but a queue of 200 holds 199 (199 ms); use ticks of 1.006 ms or a queue of 201",
             ),
-            (100, 1, "2 ticks of 100 ms ahead, and the queue of 1 takes 0, 0 ms; give a queue of 3"),
+            (100, 1, "2 ticks of 100 ms in the queue, but a queue of 1 holds 0 (0 ms); use a queue of 3"),
         ] {
             let refused = RawHost::with_slack(&experiment(tick_ms, depth), SLACK_NS).err();
             let text = refused.expect("the queue is too short").to_string();
-            assert_eq!(text, format!("a lead of 200 ms is {why}"));
+            assert_eq!(text, format!("a lead of 200 ms needs {why}"));
         }
         // No queue could be so deep.
         let refused = NotPaced::Short { slack_ns: SLACK_NS, tick_ns: 62_500, depth: 16 };
-        assert!(refused.to_string().ends_with("0.937 ms; give ticks of 13.334 ms"), "{refused}");
+        assert!(refused.to_string().ends_with("(0.937 ms); use ticks of 13.334 ms"), "{refused}");
     }
 
     #[test]
-    fn more_ahead_than_the_queue_takes_is_refused() {
-        assert_eq!(RawHost::new(&experiment(10, 4), 4).err(), Some(NotPaced::Overflow { depth: 4 }));
+    fn a_lead_longer_than_the_queue_is_refused() {
+        assert_eq!(RawHost::new(&experiment(10, 4), 4).err(), Some(NotPaced::Overflow { lead: 4, depth: 4 }));
         let nothing =
             Scenario::from_json(r#"{ "source": { "packets": { "packets": [] } } }"#).expect("reads");
         let nothing = Experiment::new(&nothing).expect("it has no problems");

@@ -3,8 +3,8 @@
 //! A controller receives the AND of what the host and all other controllers send, and 1 while it sends; the host receives
 //! the controllers while it is not sending. All receive a forced level.
 //!
-//! A run is a sequence of windows in which no sender changes its level, so each controller runs separately. A window ends
-//! where the host or a forced level changes, where a controller may begin or continue to drive, or where the host acts.
+//! A run is a sequence of windows in which no sender changes its level, so that each controller can run separately. A window
+//! ends where a level of the line changes or may change, and where the host has an event.
 
 use crate::hosts::framed_host::FramedHost;
 use alloc::vec::Vec;
@@ -33,14 +33,14 @@ struct Node {
     device: Device,
     /// TX in the window's first cycle; `None` while it does not drive.
     drives: Option<bool>,
-    hears: bool,
+    received_level: bool,
     collides: bool,
 }
 
 impl Bus {
     pub(crate) fn new(line: Line, host: Option<FramedHost>, devices: Vec<Device>) -> Self {
         debug_assert!(!devices.is_empty(), "a line without a controller");
-        let node = |device| Node { device, drives: None, hears: true, collides: false };
+        let node = |device| Node { device, drives: None, received_level: true, collides: false };
         let nodes = devices.into_iter().map(node).collect();
         Self { line, host, nodes, start: Instant::RESET, until: Instant::RESET }
     }
@@ -90,11 +90,11 @@ impl Bus {
         device.max(host).unwrap_or(Instant::RESET).next()
     }
 
-    /// Enters cycle `self.start`: what each controller receives, and what the host does.
+    /// Begins cycle `self.start`: updates the levels that the controllers receive, and runs the host.
     fn enter(&mut self, sinks: &mut [impl Sink]) {
         let Self { line, host, nodes, start, .. } = self;
         let now = *start;
-        // After an idle time there may be several changes that no one received.
+        // After an idle time, several changes may have passed.
         while line.next_change() <= now {
             line.change();
         }
@@ -107,7 +107,7 @@ impl Bus {
         }
         for (index, node) in nodes.iter_mut().enumerate() {
             let others_low = low - u32::from(node.drives == Some(false));
-            node.hears = line.level(others_low == 0);
+            node.received_level = line.level(others_low == 0);
             let collides = node.drives.is_some() && (host_sends || driving > 1);
             if collides && !node.collides {
                 sinks.get_mut(index).event(now, Event::Collision);
@@ -120,14 +120,15 @@ impl Bus {
         }
     }
 
+    /// The end of the window that begins in `self.start`.
     fn window(&self, end: Instant) -> Instant {
-        let driven = self.nodes.iter().map(|node| node.device.next_driven(node.hears));
+        let driven = self.nodes.iter().map(|node| node.device.next_driven(node.received_level));
         let host = self.host.as_ref().map_or(Instant::NEVER, |host| host.deadline(self.start));
         driven.fold(self.line.next_change().min(host).min(end), Instant::min)
     }
 
-    /// Runs to cycle `end`, or with [`Instant::NEVER`] until no further change is possible, with a sink per controller;
-    /// stops early when a sink pauses.
+    /// Runs to cycle `end`, or with [`Instant::NEVER`] until no event follows, with a sink per controller. Stops early when a
+    /// sink pauses.
     pub(crate) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         while self.start < end {
             if self.start == self.until {
@@ -136,7 +137,7 @@ impl Bus {
                 debug_assert!(self.start < self.until, "an event before {:?} was skipped", self.start);
             }
             for (index, node) in self.nodes.iter_mut().enumerate() {
-                node.device.run(node.hears, self.until, &mut sinks.get_mut(index));
+                node.device.run(node.received_level, self.until, &mut sinks.get_mut(index));
             }
             let is_behind = |device: &Device| {
                 device.now() < self.until && !(self.until == Instant::NEVER && device.at_rest())
@@ -156,7 +157,7 @@ impl Bus {
     pub(crate) fn clock(&mut self, sinks: &mut [impl Sink]) {
         self.enter(sinks);
         for (index, node) in self.nodes.iter_mut().enumerate() {
-            node.device.clock(node.hears, &mut sinks.get_mut(index));
+            node.device.clock(node.received_level, &mut sinks.get_mut(index));
         }
         self.start = self.start.next();
         self.until = self.start;

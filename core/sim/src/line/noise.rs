@@ -31,6 +31,7 @@ impl Random {
     }
 }
 
+/// The random faults of a line; a seed always gives the same faults.
 #[derive(Clone, Debug)]
 pub struct Noise {
     rates: Rates,
@@ -42,15 +43,16 @@ pub struct Noise {
 /// A send with noise.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CorruptedSend {
+    /// The bytes that reach the line.
     pub bytes: Vec<u8>,
+    /// A level that is forced during the send.
     pub forced: Option<ForcedLevel>,
     /// Whether the host crashed after sending `bytes`.
     pub crashes: bool,
 }
 
 impl Noise {
-    /// The noise of a line; `None` where every rate is 0.
-    #[must_use]
+    /// The noise of a line; `None` if every rate is 0.
     pub fn new(rates: &Rates, clock_hz: u32, baud: u32) -> Option<Self> {
         let quiet = Rates { seed: rates.seed, ..Rates::default() };
         let random = Random::new(rates.seed.into());
@@ -75,7 +77,7 @@ impl Noise {
         }
     }
 
-    /// A byte that the host receives.
+    /// What the host receives of a byte.
     pub fn receive(&mut self, byte: u8) -> Vec<u8> {
         let mut received = Vec::new();
         self.byte(byte, &mut received);
@@ -83,23 +85,23 @@ impl Noise {
     }
 
     /// Whether the host misses a reply.
-    pub fn misses(&mut self) -> bool {
+    pub fn misses_reply(&mut self) -> bool {
         self.happens(self.rates.lost_replies_ppm)
     }
 
-    /// Bytes that the host sends from `start` on.
+    /// What reaches the line of a send that begins in cycle `start`.
     pub fn send(&mut self, start: Instant, bytes: &[u8]) -> CorruptedSend {
-        let mut spoiled = Vec::with_capacity(bytes.len());
+        let mut corrupted = Vec::with_capacity(bytes.len());
         for &byte in bytes {
-            self.byte(byte, &mut spoiled);
+            self.byte(byte, &mut corrupted);
         }
         let crashes = self.happens(self.rates.host_crashes_ppm);
         if crashes {
-            spoiled.truncate(self.random.below(spoiled.len() as u64 + 1) as usize);
+            corrupted.truncate(self.random.below(corrupted.len() as u64 + 1) as usize);
         }
         let glitch = (0..bytes.len()).any(|_| self.happens(self.rates.glitches_ppm));
-        let forced = glitch.then(|| self.glitch(start, spoiled.len() as u64));
-        CorruptedSend { bytes: spoiled, forced, crashes }
+        let forced = glitch.then(|| self.glitch(start, corrupted.len() as u64));
+        CorruptedSend { bytes: corrupted, forced, crashes }
     }
 
     /// A forced level of one cycle to two bit times within `bytes` bytes.
@@ -112,8 +114,7 @@ impl Noise {
         ForcedLevel { start, end, level: self.random.below(2) == 1 }
     }
 
-    /// A schedule with noise. A send still ends before the next one.
-    #[must_use]
+    /// A schedule with noise. Each send still ends before the next one.
     pub fn schedule(mut self, schedule: &Schedule) -> (Schedule, Vec<ForcedLevel>) {
         let (mut noisy, mut all_forced) = (Schedule::default(), Vec::new());
         for (index, send) in schedule.iter().enumerate() {
@@ -149,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_certain_happens_and_what_has_no_rate_does_not() {
+    fn faults_at_a_rate_of_one_always_happen_and_at_zero_never() {
         const SURE: u32 = 1_000_000;
         let bytes = [1, 2, 3];
         let spoil = |rates| noise(rates).send(Instant(100), &bytes);
@@ -163,11 +164,11 @@ mod tests {
         let forced = spoil(Rates { glitches_ppm: SURE, ..Rates::default() }).forced.expect("forced");
         assert!(Instant(100) <= forced.start && forced.start < forced.end);
         assert!(forced.end.0 < 100 + line_time(3, 16_000_000, 115_200) + 280);
-        assert!(noise(Rates { lost_replies_ppm: SURE, ..Rates::default() }).misses());
+        assert!(noise(Rates { lost_replies_ppm: SURE, ..Rates::default() }).misses_reply());
     }
 
     #[test]
-    fn a_spoiled_schedule_still_sends_one_thing_after_another() {
+    fn sends_of_a_noisy_schedule_do_not_overlap() {
         let mut schedule = Schedule::default();
         schedule.push(Instant(1), &[1, 2]);
         schedule.push(Instant(1) + Cycles(line_time(2, 16_000_000, 115_200)), &[3, 4]);
@@ -185,12 +186,12 @@ mod tests {
         use stepscope_scenario::Noise as Rates;
 
         let rates = Rates { seed: 7, flipped_bits_ppm: 100_000, ..Rates::default() };
-        let spoiled = |rates: &Rates| {
+        let corrupted = |rates: &Rates| {
             let mut noise = Noise::new(rates, 16_000_000, 115_200).expect("there are faults");
             noise.send(Instant(1), &[0; 32]).bytes
         };
-        assert_ne!(spoiled(&rates), [0; 32]);
-        assert_eq!(spoiled(&rates), spoiled(&rates)); // from the same seed the same faults
+        assert_ne!(corrupted(&rates), [0; 32]);
+        assert_eq!(corrupted(&rates), corrupted(&rates)); // from the same seed the same faults
         assert!(Noise::new(&Rates::default(), 16_000_000, 115_200).is_none());
     }
 }

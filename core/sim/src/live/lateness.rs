@@ -1,10 +1,11 @@
-//! Delays relative to the wall clock as a histogram (LIVE H2, H3).
+//! A histogram of delays in real time (LIVE H2, H3).
 
 use core::fmt;
 
 /// Upper ends of the bars in microseconds; the last bar has no end.
 const BARS_US: [u64; 9] = [100, 250, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000];
 
+/// A histogram of delays.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lateness {
     bars: [u64; BARS_US.len() + 1],
@@ -12,6 +13,7 @@ pub struct Lateness {
 }
 
 impl Lateness {
+    /// Adds a delay.
     pub fn add(&mut self, late_ns: u64) {
         let bar = BARS_US.iter().position(|&end| late_ns <= 1000 * end).unwrap_or(BARS_US.len());
         if let Some(count) = self.bars.get_mut(bar) {
@@ -20,6 +22,7 @@ impl Lateness {
         self.worst_ns = self.worst_ns.max(late_ns);
     }
 
+    /// Number of delays.
     pub fn count(&self) -> u64 {
         self.bars.iter().sum()
     }
@@ -29,7 +32,7 @@ impl Lateness {
         self.worst_ns as f64 / 1e6
     }
 
-    /// The end in ms of the bar with `percent` of all, or the maximum.
+    /// The end in ms of the bar below which `percent` of all delays are, or the maximum.
     pub fn within_ms(&self, percent: u64) -> f64 {
         let wanted = (self.count() * percent).div_ceil(100);
         let mut sum = 0;
@@ -42,7 +45,7 @@ impl Lateness {
         self.worst_ms()
     }
 
-    /// Each bar's end in ms (`None`: later than all) and its count.
+    /// The end of each bar in ms (`None` for the last bar) and its count.
     pub fn bars(&self) -> impl Iterator<Item = (Option<f64>, u64)> {
         let ends = BARS_US.iter().map(|&end| Some(end as f64 / 1e3)).chain([None]);
         ends.zip(self.bars)

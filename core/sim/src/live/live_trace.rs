@@ -6,7 +6,7 @@ use stepscope_peripheral::{
     units::Instant,
 };
 
-/// A ring of records.
+/// A ring buffer of records.
 #[derive(Clone, Debug)]
 pub struct LiveTrace {
     /// Invariant: at most `max`, rising in time.
@@ -20,28 +20,31 @@ pub struct LiveTrace {
 /// Positions at regular times.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PositionCurve {
-    /// Later than requested where the ring begins later.
+    /// Later than requested if the ring begins later.
     pub from: Instant,
+    /// Time of the last point.
     pub to: Instant,
+    /// The positions of each channel.
     pub channels: Vec<Vec<i32>>,
 }
 
 impl LiveTrace {
     /// A ring of `max` records, at least one.
-    #[must_use]
     pub fn new(max: usize) -> Self {
         Self { records: VecDeque::new(), max: max.max(1), before: Levels::RESET, is_cut: false }
     }
 
+    /// Number of records.
     pub fn len(&self) -> usize {
         self.records.len()
     }
 
+    /// Whether there are no records.
     pub fn is_empty(&self) -> bool {
         self.records.is_empty()
     }
 
-    /// `points` positions per channel in a window of time; `now` are those after the last record.
+    /// `points` positions per channel in a window of time; `now` has the positions after the last record.
     pub fn positions(&self, now: &[i32], (from, to): (Instant, Instant), points: usize) -> PositionCurve {
         let oldest = self.records.front().filter(|_| self.is_cut).map_or(from, |first| first.cycle);
         let from = from.max(oldest).min(to);

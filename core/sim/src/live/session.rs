@@ -46,19 +46,35 @@ pub const MAX_RECORDED_SENDS: u64 = 400_000;
 /// Bit times after a frame in which its reply has begun: 11, and a margin for other clocks.
 const REPLY_BEGINS_BITS: u64 = 30;
 
-/// Ends an incomplete frame: a byte that makes its CRC fail, and the delimiter.
-const SPOILED_END: [u8; 2] = [0xff, 0];
+/// Ends an incomplete frame as invalid: a byte that makes its CRC fail, and the delimiter.
+const INVALID_END: [u8; 2] = [0xff, 0];
 
 /// A byte of a controller's reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReplyByte {
+    /// Index of the controller.
     pub controller: usize,
     /// First cycle after its stop bit.
     pub end: Instant,
+    /// The value.
     pub byte: u8,
 }
 
-/// Controllers that an external host drives.
+/// Simulated controllers that an external host drives.
+///
+/// ```
+/// use stepscope_peripheral::{signal::Record, units::Instant, wire::frame};
+/// use stepscope_scenario::Scenario;
+/// use stepscope_sim::session::Session;
+///
+/// let scenario = Scenario::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("valid JSON");
+/// let mut session = Session::new(&scenario).expect("no problems");
+/// let mut traces = [Vec::<Record>::new()];
+/// session.receive(&frame::emit(0, 4, &[])); // the bytes of your host: STATUS
+/// session.advance(Instant(50_000), &mut traces);
+/// assert_eq!(session.take_replies().count(), 17); // the bytes for your host
+/// session.recording().verify().expect("a replay has the same trace");
+/// ```
 #[derive(Clone)]
 pub struct Session {
     /// The recording without its sends and its length.
@@ -77,8 +93,8 @@ pub struct Session {
     /// Replies that begin earlier are for a host that has disconnected.
     replies_from: Instant,
     digests: Vec<Digest>,
-    /// The recording up to its limit.
-    cut: Option<Rc<Recording>>,
+    /// The recording, once it has reached its limit.
+    full_recording: Option<Rc<Recording>>,
     presses: panel::Presses,
 }
 
@@ -101,7 +117,7 @@ impl Session {
     /// segments, which have no line.
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         if scenario.source.runs_segments() {
-            let detail = "segments run a controller by itself, and nothing is on the line; choose ticks, packets or a line script";
+            let detail = "segments run without a serial line; use ticks, packets or a line script";
             return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
         }
         let blank = blank(scenario);
@@ -124,7 +140,7 @@ impl Session {
             replies_from: Instant::RESET,
             digests: vec![Digest::default(); experiment.controllers()],
             experiment: Rc::new(experiment),
-            cut: None,
+            full_recording: None,
             presses: panel::Presses::default(),
         };
         session.advance::<Digest>(Instant::RESET, &mut []);
@@ -136,6 +152,7 @@ impl Session {
         &self.experiment
     }
 
+    /// The run.
     pub const fn run(&self) -> &Run {
         &self.run
     }
@@ -145,15 +162,17 @@ impl Session {
         Instant(self.run.cycles().0.saturating_sub(1))
     }
 
+    /// Number of received bytes.
     pub const fn received(&self) -> u64 {
         self.received
     }
 
+    /// Digest of the trace of each controller.
     pub fn digests(&self) -> &[Digest] {
         &self.digests
     }
 
-    /// Whether nothing changes without input, and no reply waits.
+    /// Whether no event follows without input, and no reply is left.
     pub fn is_idle(&self) -> bool {
         self.presses.are_done() && self.run.is_idle() && self.replies.is_empty()
     }
@@ -163,18 +182,18 @@ impl Session {
         self.presses.are_done() && self.run.stand_alone().is_some_and(StandAlone::jogs_without_end)
     }
 
+    /// Whether [`Self::deadline`] is a cycle.
     pub fn is_busy(&self) -> bool {
         self.deadline() != Instant::NEVER
     }
 
-    /// The next cycle to run to: a reply's byte has left, or all received bytes are on the line; [`Instant::NEVER`] if the line
-    /// is idle.
+    /// The next cycle to run to, when a byte of a reply has been sent or all received bytes are on the line;
+    /// [`Instant::NEVER`] if the line is idle.
     pub fn deadline(&self) -> Instant {
         self.deadline_of_round(Cycles(0))
     }
 
-    /// As [`Self::deadline`], but with all bytes of replies that leave within `round` of the first, so that fewer
-    /// rounds are needed.
+    /// As [`Self::deadline`], but for all bytes of replies that end within `round` after the first one.
     pub fn deadline_of_round(&self, round: Cycles) -> Instant {
         let now = self.now();
         let ends = || self.replies.iter().map(|reply| reply.end);
@@ -197,19 +216,19 @@ impl Session {
         self.last_send.filter(|&(start, sent)| start + self.times.byte(sent) >= next)
     }
 
-    /// The host disconnects. Replies to it are dropped, so that the next host does not get them. Its unfinished frame is ended
-    /// as invalid, so that it neither runs nor includes the next host's first frame.
+    /// Disconnects the host. Replies to it are dropped, so that the next host does not get them. An incomplete frame is ended as
+    /// invalid, so that it neither runs nor includes the first frame of the next host.
     pub fn hang_up(&mut self) {
         if self.in_frame {
-            self.receive(&SPOILED_END);
+            self.receive(&INVALID_END);
         }
         self.replies.clear();
         let end = self.last_send.map_or(self.now(), |(start, sent)| start + self.times.byte(sent));
         self.replies_from = end.max(self.now()) + self.times.bit(REPLY_BEGINS_BITS);
     }
 
-    /// Puts bytes on the line from the next cycle on; ignored without a line. A host that sends faster than the line
-    /// waits in an [`Input`].
+    /// Puts bytes on the line from the next cycle on; ignores them without a line. [`Input`] buffers the bytes of a host that
+    /// sends faster than the line.
     pub fn receive(&mut self, bytes: &[u8]) {
         let count = bytes.len() as u64;
         if count == 0 || !matches!(self.blank.source, Source::Line(_)) {
@@ -217,17 +236,17 @@ impl Session {
         }
         let next = self.now().next();
         let joins = self.joined_send();
-        if self.cut.is_none() {
+        if self.full_recording.is_none() {
             let sends = self.run.schedule().len() as u64 + u64::from(joins.is_none());
             if self.received + count > MAX_RECORDED_BYTES || sends > MAX_RECORDED_SENDS {
-                self.cut_recording();
+                self.end_recording();
             }
         }
         self.received += count;
         self.in_frame =
             self.blank.line.protocol == Protocol::Framed && bytes.last().is_some_and(|byte| *byte != 0);
         let line = self.run.line_mut();
-        if self.cut.is_some() {
+        if self.full_recording.is_some() {
             line.forget_sent();
         }
         if let Some((start, sent)) = joins {
@@ -242,10 +261,10 @@ impl Session {
     /// Enters a change at the panel of a stand-alone controller after [`Self::now`] and returns its cycle: the next one in which
     /// that input has no change yet. It cancels a later level of that input. Errors: those of a script, and a session with a line.
     pub fn enter(&mut self, controller: usize, change: Change) -> Result<Instant, NotEntered> {
-        if self.cut.is_none() && !self.presses.has_room() {
-            self.cut_recording();
+        if self.full_recording.is_none() && !self.presses.has_room() {
+            self.end_recording();
         }
-        if self.cut.is_some() {
+        if self.full_recording.is_some() {
             self.presses.forget();
         }
         let machine = self.run.stand_alone_mut().ok_or(NotEntered::NoController)?;
@@ -265,32 +284,32 @@ impl Session {
         Ok(at)
     }
 
-    fn cut_recording(&mut self) {
-        self.cut = Some(Rc::new(self.recording_to_now()));
+    fn end_recording(&mut self) {
+        self.full_recording = Some(Rc::new(self.recording_to_now()));
     }
 
     /// Runs up to and including cycle `to`, with a sink per controller.
     pub fn advance<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
         while let Some(due) = self.presses.due(to) {
-            self.run_on(Instant(due.0.saturating_sub(1)), sinks);
+            self.run_to(Instant(due.0.saturating_sub(1)), sinks);
             while let Some((controller, change)) = self.presses.take(due) {
-                // The level before it was allowed, so this one is.
+                // The previous level was allowed, so this one is, too.
                 let _ = self.enter(controller, change);
             }
         }
-        self.run_on(to, sinks);
-        if self.cut.is_none() && self.run.stand_alone().is_some_and(panel::begins_many) {
-            self.cut_recording();
+        self.run_to(to, sinks);
+        if self.full_recording.is_none() && self.run.stand_alone().is_some_and(panel::begins_many) {
+            self.end_recording();
         }
     }
 
-    fn run_on<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
+    fn run_to<S: Sink>(&mut self, to: Instant, sinks: &mut [S]) {
         let Self { run, digests, replies, reply_times, replies_from, .. } = self;
         let mut sinks = sinks.iter_mut();
-        let mut answers: Vec<Vec<ReplyByte>> = vec![Vec::new(); digests.len()];
-        let taps = digests.iter_mut().zip(reply_times.iter()).zip(&mut answers).enumerate();
-        let mut taps: Vec<Tap<'_, S>> = taps
-            .map(|(controller, ((digest, times), replies))| Tap {
+        let mut new_replies: Vec<Vec<ReplyByte>> = vec![Vec::new(); digests.len()];
+        let parts = digests.iter_mut().zip(reply_times.iter()).zip(&mut new_replies).enumerate();
+        let mut session_sinks: Vec<SessionSink<'_, S>> = parts
+            .map(|(controller, ((digest, times), replies))| SessionSink {
                 controller,
                 digest,
                 times: *times,
@@ -299,25 +318,26 @@ impl Session {
                 sink: sinks.next(),
             })
             .collect();
-        run.run_to(to.min(Instant(END_OF_TIME - 1)).next(), &mut taps);
-        answers.sort_by_key(|replies| replies.first().map(|reply| reply.end));
-        replies.extend(answers.into_iter().flatten());
+        run.run_to(to.min(Instant(END_OF_TIME - 1)).next(), &mut session_sinks);
+        new_replies.sort_by_key(|replies| replies.first().map(|reply| reply.end));
+        replies.extend(new_replies.into_iter().flatten());
     }
 
-    /// The bytes of replies that have left, in order; each is returned once.
+    /// Removes and returns the bytes of replies that have been sent, in order.
     pub fn take_replies(&mut self) -> impl Iterator<Item = ReplyByte> {
         let now = self.now();
-        let gone = self.replies.iter().take_while(|reply| reply.end <= now).count();
-        self.replies.drain(..gone)
+        let sent = self.replies.iter().take_while(|reply| reply.end <= now).count();
+        self.replies.drain(..sent)
     }
 
+    /// Whether the recording has the whole session.
     pub const fn records_all(&self) -> bool {
-        self.cut.is_none()
+        self.full_recording.is_none()
     }
 
     /// The recorded session so far, as a scenario.
     pub fn recording(&self) -> Recording {
-        self.cut.as_ref().map_or_else(|| self.recording_to_now(), |cut| Recording::clone(cut))
+        self.full_recording.as_ref().map_or_else(|| self.recording_to_now(), |full| Recording::clone(full))
     }
 
     fn recording_to_now(&self) -> Recording {
@@ -345,7 +365,8 @@ impl Session {
     }
 }
 
-struct Tap<'a, S> {
+/// Collects the digest and the replies of a controller, and passes its records on.
+struct SessionSink<'a, S> {
     controller: usize,
     digest: &'a mut Digest,
     times: BitTimes,
@@ -354,7 +375,7 @@ struct Tap<'a, S> {
     sink: Option<&'a mut S>,
 }
 
-impl<S: Sink> Sink for Tap<'_, S> {
+impl<S: Sink> Sink for SessionSink<'_, S> {
     fn record(&mut self, record: Record) {
         self.digest.record(record);
         self.sink.record(record);
@@ -376,11 +397,14 @@ impl<S: Sink> Sink for Tap<'_, S> {
     }
 }
 
+/// A recorded session, as a scenario that replays it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// The same controllers and line, with the received bytes as the source.
     pub scenario: Scenario,
+    /// Digest of the trace of each controller.
     pub digests: Vec<u64>,
+    /// Digest of the panels of stand-alone controllers.
     pub panel_digest: Option<u64>,
 }
 
@@ -391,13 +415,18 @@ fn panel_digest(run: &Run) -> Option<u64> {
 /// Why a recording does not replay the session.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotTheSession {
+    /// The scenario of the recording has problems.
     Refused(Vec<Problem>),
-    /// A controller has another trace.
+    /// The trace of a controller has another digest.
     Differs {
+        /// Index of the controller.
         controller: usize,
+        /// Digest in the session.
         session: u64,
+        /// Digest in the replay.
         replay: u64,
     },
+    /// The panels have another digest.
     PanelsDiffer,
 }
 
@@ -410,17 +439,15 @@ impl fmt::Display for NotTheSession {
             }
             Self::Differs { controller, session, replay } => write!(
                 f,
-                "controller {controller} had the digest {session:016x} in the session, and {replay:016x} when the recording was run"
+                "controller {controller}: the digest is {session:016x} in the session, but {replay:016x} in the replay"
             ),
-            Self::PanelsDiffer => {
-                f.write_str("the panels showed something else in the session than when the recording was run")
-            }
+            Self::PanelsDiffer => f.write_str("the panels in the replay differ from those in the session"),
         }
     }
 }
 
 impl Recording {
-    /// Runs it and compares the digests. Errors: the first difference.
+    /// Replays the session and compares the digests. Errors: the first difference.
     pub fn verify(&self) -> Result<(), NotTheSession> {
         let experiment = Experiment::new(&self.scenario).map_err(NotTheSession::Refused)?;
         let mut replay = vec![Digest::default(); experiment.controllers()];

@@ -31,13 +31,16 @@ use stepscope_peripheral::{
 };
 use stepscope_scenario::{Problem, Scenario};
 
-/// Maximum cycles until the model is idle.
-const MAX_REST: u64 = 20_000_000_000;
-const REST_ROUND: u64 = 1_000_000;
+/// Maximum cycles to wait until the model is idle.
+const MAX_WAIT: u64 = 20_000_000_000;
+const WAIT_ROUND: u64 = 1_000_000;
 
+/// A reply and its delay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer {
+    /// The reply.
     pub reply: Reply,
+    /// Its positions, if it has any.
     pub positions: Option<Positions>,
     /// From the end of the frame to the end of the reply.
     pub delay: Cycles,
@@ -50,10 +53,12 @@ struct Opening {
     positions: Option<Positions>,
 }
 
+/// The model of a real device.
 #[derive(Clone)]
 pub struct Twin {
     session: Session,
-    ahead: Cycles,
+    /// Cycles that the model ran before the host's cycle 0.
+    lead: Cycles,
     deframers: Vec<Deframer>,
     opening: Vec<Opening>,
     sent_end: Instant,
@@ -63,20 +68,21 @@ impl Twin {
     /// Resets the controllers and waits until they are idle. Errors: every problem, and segments, which have no line.
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         let mut session = Session::new(&Scenario { plant: None, ..scenario.clone() })?;
-        rest(&mut session);
+        run_until_idle(&mut session);
         let controllers = session.experiment().controllers();
         let deframers = (0..controllers).map(|_| Deframer::default()).collect();
-        let ahead = Cycles(session.now().0);
+        let lead = Cycles(session.now().0);
         Ok(Self {
             session,
-            ahead,
+            lead,
             deframers,
             opening: vec![Opening::default(); controllers],
             sent_end: Instant(0),
         })
     }
 
-    /// The host sends a frame from cycle `now` on; `device` is its state of the addressed device.
+    /// Passes a frame of the host to the model, sent from cycle `now` on. `device` has the reports of the addressed device, which
+    /// has `channels`.
     pub fn send(&mut self, bytes: &[u8], now: Instant, (channels, device): (u8, &Known)) {
         let bytes = renumbered(bytes, device.opening.map_or(0, |opening| opening.expected_seq), channels);
         self.advance(now);
@@ -89,10 +95,10 @@ impl Twin {
     }
 
     fn advance(&mut self, now: Instant) {
-        self.session.advance::<Digest>(now + self.ahead, &mut []);
+        self.session.advance::<Digest>(now + self.lead, &mut []);
     }
 
-    /// The model's answer to the last frame, if it has one.
+    /// The model's reply to the last frame, if there is one.
     pub fn answer(&mut self) -> Option<Answer> {
         let mut answer = None;
         while self.session.is_busy() && answer.is_none() {
@@ -149,7 +155,7 @@ impl Twin {
         }
         let faults = [status.faults & !opening.faults, model_status.faults & !own_opening.faults];
         if faults[0] != faults[1] {
-            let [reported, model] = faults.map(names);
+            let [reported, model] = faults.map(fault_names);
             return Some(format!("its new faults are {reported}, the model's {model}"));
         }
         if !(is_ready(status) && is_ready(model_status)) {
@@ -161,9 +167,8 @@ impl Twin {
             let [reported, model] = done;
             return Some(format!("idle, it has done {reported} ticks since the start, the model {model}"));
         }
-        let went = |now: Option<Positions>, opening: Option<Positions>| went(now?, opening?);
-        let reported = went(reported.positions, device.opening_positions)?;
-        let model = went(model.positions, own.positions)?;
+        let reported = travel(reported.positions?, device.opening_positions?)?;
+        let model = travel(model.positions?, own.positions?)?;
         let (channel, (reported, model)) =
             reported.iter().zip(&model).enumerate().find(|(_, (reported, model))| reported != model)?;
         Some(format!(
@@ -171,38 +176,38 @@ impl Twin {
         ))
     }
 
-    /// The idle controller of the model: its status, ticks and steps per channel since the start.
+    /// Status, ticks and steps per channel since the start of a controller of the model, once it is idle.
     pub fn end(&mut self, controller: usize) -> Option<(Status, u32, Vec<i32>)> {
-        rest(&mut self.session);
+        run_until_idle(&mut self.session);
         let opening = self.opening.get(controller)?;
         let device = self.session.run().devices().nth(controller)?;
         let status = device.status()?;
         let channels = usize::from(self.session.experiment().configs().nth(controller)?.channels());
-        let began = opening.positions;
-        let began = began.as_ref().map_or(&[][..], Positions::as_slice).iter().chain(core::iter::repeat(&0));
+        let start = opening.positions.as_ref().map_or(&[][..], Positions::as_slice);
+        let start = start.iter().chain(core::iter::repeat(&0));
         let positions = device.positions();
-        let went = positions.iter().take(channels).zip(began).map(|(now, began)| now.wrapping_sub(*began));
+        let travel = positions.iter().take(channels).zip(start).map(|(now, start)| now.wrapping_sub(*start));
         let done = status.ticks_done.wrapping_sub(opening.status.map_or(0, |opening| opening.ticks_done));
-        Some((status, done, went.collect()))
+        Some((status, done, travel.collect()))
     }
 }
 
-fn names(bits: u16) -> String {
+fn fault_names(bits: u16) -> String {
     let names: Vec<String> = Faults::from_bits(bits).names().map(|name| name.to_string()).collect();
     if names.is_empty() { "none".into() } else { names.join(" ") }
 }
 
-fn went(now: Positions, began: Positions) -> Option<Vec<i32>> {
-    let (now, began) = (now.as_slice(), began.as_slice());
-    (now.len() == began.len())
-        .then(|| now.iter().zip(began).map(|(now, began)| now.wrapping_sub(*began)).collect())
+fn travel(now: Positions, start: Positions) -> Option<Vec<i32>> {
+    let (now, start) = (now.as_slice(), start.as_slice());
+    (now.len() == start.len())
+        .then(|| now.iter().zip(start).map(|(now, start)| now.wrapping_sub(*start)).collect())
 }
 
-/// Waits until nothing changes, for a bounded time.
-fn rest(session: &mut Session) {
-    let end = session.now().0.saturating_add(MAX_REST);
+/// Runs until the session is idle, for a limited time.
+fn run_until_idle(session: &mut Session) {
+    let end = session.now().0.saturating_add(MAX_WAIT);
     while !session.is_idle() && session.now().0 < end {
-        session.advance::<Digest>(Instant(session.now().0 + REST_ROUND), &mut []);
+        session.advance::<Digest>(Instant(session.now().0 + WAIT_ROUND), &mut []);
         session.take_replies().for_each(drop);
     }
 }
@@ -210,7 +215,7 @@ fn rest(session: &mut Session) {
 /// The frame with the sequence number that the model expects.
 fn renumbered(bytes: &[u8], offset: u8, channels: u8) -> Vec<u8> {
     let mut deframer = Deframer::default();
-    let mut made = None;
+    let mut renumbered = None;
     for &byte in bytes {
         if let Some(Deframed::Frame(Frame { address, kind, body })) = deframer.byte(byte)
             && kind == Kind::Ticks as u8
@@ -220,10 +225,10 @@ fn renumbered(bytes: &[u8], offset: u8, channels: u8) -> Vec<u8> {
             // Leading delimiters end a broken frame.
             let mut bytes: Vec<u8> = bytes.iter().copied().take_while(|&byte| byte == 0).collect();
             bytes.extend(emit(address, kind, &body));
-            made = Some(bytes);
+            renumbered = Some(bytes);
         }
     }
-    made.unwrap_or_else(|| bytes.to_vec())
+    renumbered.unwrap_or_else(|| bytes.to_vec())
 }
 
 #[cfg(test)]
@@ -239,7 +244,7 @@ mod tests {
         let scenario = Scenario::from_json(FRAMED).expect("reads");
         let experiment = Experiment::new(&scenario).expect("no problems");
         let mut device = Session::new(&scenario).expect("no problems");
-        rest(&mut device);
+        run_until_idle(&mut device);
         let mut found = Vec::new();
         for stream in 0..=before {
             let mut host = experiment.conversation(device.now()).expect("it is confirmed");
@@ -302,14 +307,14 @@ mod tests {
     }
 
     #[test]
-    fn a_device_that_is_the_model_differs_in_nothing_also_where_it_ran_before() {
+    fn a_device_that_equals_the_model_has_no_differences_even_if_it_ran_before() {
         for before in [0, 1, 2] {
             assert_eq!(differences(before, |_, _| {}), Vec::<String>::new(), "{before}");
         }
     }
 
     #[test]
-    fn what_differs_has_a_name() {
+    fn each_difference_is_described() {
         type Spoil = fn(&mut Reply);
         let rows: [(usize, Spoil, &str); 5] = [
             (

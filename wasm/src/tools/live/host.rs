@@ -16,7 +16,7 @@ use stepscope_core::{
     scenario::Host,
     sim::{
         Experiment,
-        framed_host::{Conversation, Job, Known, Progress, Report, Standing, for_real_line},
+        framed_host::{Conversation, HostStatus, Job, Known, Progress, Report, for_real_line},
         session::{Pace, SessionClock},
         twin::{Answer, Twin},
     },
@@ -176,7 +176,7 @@ impl LiveHost {
                 self.timed_out(ms);
             }
             let Some(bytes) = self.host.poll(now) else { continue };
-            if let Some((job, kind)) = self.host.under_way() {
+            if let Some((job, kind)) = self.host.pending_frame() {
                 let mut controllers = 0..self.experiment.controllers();
                 let controller =
                     controllers.find(|&index| self.experiment.job(index) == Some(job)).unwrap_or(0);
@@ -248,7 +248,7 @@ impl LiveHost {
 
     /// Progress (`State`).
     pub fn state(&self) -> Result<JsValue, JsError> {
-        let standing = Standing::new(&self.host);
+        let standing = HostStatus::new(&self.host);
         object(&State {
             text: standing.to_string(),
             accepted: standing.accepted,

@@ -1,14 +1,13 @@
-//! Aligns the commanded and the executed ticks: which were executed, which were not, and which are additional.
+//! Aligns the commanded and the executed ticks: which are missing, which are additional, and which have other steps.
 //!
-//! Where the lists differ, the smallest change that explains it counts: ticks missing, ticks added, or
-//! ticks with other steps, until [`SAME`] of them agree again.
+//! Where the lists differ, the smallest number of ticks is skipped after which [`SAME`] ticks agree again.
 
 use stepscope_peripheral::{signal::MAX_CHANNELS, wire::packet::ChannelCommand};
 
-/// Equal ticks after which two lists agree again.
+/// Equal ticks after which two lists count as aligned again.
 const SAME: usize = 3;
-/// Maximum ticks to search for that.
-const FAR: usize = 64;
+/// Maximum number of ticks to skip.
+const MAX_SKIPPED: usize = 64;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Alignment {
@@ -33,14 +32,15 @@ impl Alignment {
                 .take_while(|(commanded, executed)| commanded == executed);
             let same = channels * same.count();
             (commanded, executed) = (rest(commanded, same), rest(executed, same));
-            let (left, put) = difference(commanded, executed, channels);
-            found.take(part(commanded, left * channels), part(executed, put * channels), channels);
-            (commanded, executed) = (rest(commanded, left * channels), rest(executed, put * channels));
+            let (missing, added) = difference(commanded, executed, channels);
+            let (missing, added) = (missing * channels, added * channels);
+            found.count(part(commanded, missing), part(executed, added), channels);
+            (commanded, executed) = (rest(commanded, missing), rest(executed, added));
         }
         found
     }
 
-    fn take(&mut self, commanded: &[u8], executed: &[u8], channels: usize) {
+    fn count(&mut self, commanded: &[u8], executed: &[u8], channels: usize) {
         let both = commanded.len().min(executed.len());
         self.wrong += (both / channels) as u64;
         self.missing += ((commanded.len() - both) / channels) as u64;
@@ -53,21 +53,21 @@ impl Alignment {
     }
 }
 
-/// The smallest number of ticks of both lists after which they agree.
+/// The smallest numbers of ticks to skip in both lists before they agree.
 fn difference(commanded: &[u8], executed: &[u8], channels: usize) -> (usize, usize) {
-    let (max_left, max_put) = (commanded.len() / channels, executed.len() / channels);
-    let agree = |left: usize, put: usize| {
-        let one = rest(commanded, left * channels).chunks(channels).take(SAME);
-        one.eq(rest(executed, put * channels).chunks(channels).take(SAME))
+    let (max_missing, max_added) = (commanded.len() / channels, executed.len() / channels);
+    let agree = |missing: usize, added: usize| {
+        let one = rest(commanded, missing * channels).chunks(channels).take(SAME);
+        one.eq(rest(executed, added * channels).chunks(channels).take(SAME))
     };
-    let splits = |sum: usize| (0..=sum).map(move |left| (left, sum - left));
-    (0..=FAR)
+    let splits = |sum: usize| (0..=sum).map(move |missing| (missing, sum - missing));
+    (0..=MAX_SKIPPED)
         .flat_map(splits)
-        .find(|&(left, put)| left <= max_left && put <= max_put && agree(left, put))
-        .unwrap_or((max_left.min(FAR), max_put.min(FAR)))
+        .find(|&(missing, added)| missing <= max_missing && added <= max_added && agree(missing, added))
+        .unwrap_or((max_missing.min(MAX_SKIPPED), max_added.min(MAX_SKIPPED)))
 }
 
-/// Distance of positions from the sums of the ticks, in steps of all channels.
+/// Distance of the positions from the sums of the ticks, in steps over all channels.
 pub(super) fn distance(commanded: &[u8], channels: usize, positions: &[i32; MAX_CHANNELS]) -> u64 {
     let mut expected = [0_i64; MAX_CHANNELS];
     for tick in commanded.chunks(channels) {
@@ -77,8 +77,8 @@ pub(super) fn distance(commanded: &[u8], channels: usize, positions: &[i32; MAX_
 }
 
 fn steps(byte: u8) -> i64 {
-    let order = ChannelCommand::parse(byte);
-    if order.right { order.steps.into() } else { -i64::from(order.steps) }
+    let ChannelCommand { right, steps } = ChannelCommand::parse(byte);
+    if right { steps.into() } else { -i64::from(steps) }
 }
 
 fn part(ticks: &[u8], len: usize) -> &[u8] {
@@ -93,9 +93,9 @@ fn rest(ticks: &[u8], from: usize) -> &[u8] {
 mod tests {
     use super::*;
 
-    /// Ordered and executed ticks of one channel; wrong, extra, missing, wrong steps, missing steps.
+    /// Commanded and executed ticks of one channel; wrong, extra, missing, wrong steps, missing steps.
     #[test]
-    fn the_least_that_explains_the_difference_is_found() {
+    fn the_smallest_difference_is_found() {
         type Row<'a> = (&'a [u8], &'a [u8], [u64; 5]);
         let rows: &[Row<'_>] = &[
             (&[], &[], [0; 5]),
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_that_never_agree_come_to_an_end() {
+    fn lists_that_never_agree_are_compared_to_their_ends() {
         let commanded = [1; 1000];
         let found = Alignment::of(&commanded, &[2; 700], 2);
         assert_eq!((found.wrong, found.extra, found.missing), (350, 0, 150));

@@ -25,7 +25,7 @@ tally! {
     seeds,
     /// Seeds with an uncommanded executed tick, or a lost one that the host counts as done.
     wrong_seeds,
-    /// Controllers that did not answer.
+    /// Controllers that the host gave up, because they did not reply.
     given_up,
     /// Of these, those whose receivers all have rates in reach.
     given_up_in_reach,
@@ -47,13 +47,13 @@ tally! {
     overlong,
     /// Framing errors (FRAMING).
     framing,
-    /// Frames and packets that were whole and refused.
+    /// Complete frames and packets that were refused.
     refused,
     /// Repeated frames that were acknowledged again.
     acknowledged_again,
     /// Replies that the controllers sent.
     replies,
-    /// Replies that the host did not get whole.
+    /// Replies that the host did not receive completely.
     replies_lost,
     /// Ticks commanded.
     commanded,
@@ -71,7 +71,7 @@ tally! {
     wrong_steps,
     /// Steps of missing ticks.
     missing_steps,
-    /// Distance of the positions from the sums of the ticks, in steps of all channels.
+    /// Distance of the positions from the sums of the ticks, in steps over all channels.
     position_error,
 }
 

@@ -5,8 +5,8 @@
 //!                      └── time-out ── ten bit times ── poll: the same frame, after a delimiter
 //! ```
 //!
-//! It has no line, port or clock: the caller polls at the [`deadline`](Conversation::deadline), sends the frame, and
-//! reports its last stop bit and the received bytes. Simulation, command and page share it.
+//! It has no line, port or clock. The caller polls at the [`deadline`](Conversation::deadline), sends the frame, and reports
+//! the end of its last stop bit and the received bytes.
 
 use super::peer::{GivenUp, Job, Known, Peer, Progress};
 use alloc::vec::Vec;
@@ -30,6 +30,7 @@ const LAST_BEGIN: u64 = END_OF_TIME - (1 << 46);
 
 /// The host's counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say what is counted")]
 pub struct Counts {
     pub frames: u64,
     pub repeated: u64,
@@ -56,6 +57,22 @@ enum Phase {
 }
 
 /// The host's side of the protocol with all controllers of a line.
+///
+/// ```
+/// use stepscope_peripheral::units::{Cycles, Instant};
+/// use stepscope_sim::Experiment;
+///
+/// let experiment = Experiment::from_json(r#"{ "line": { "protocol": "framed" } }"#).expect("no problems");
+/// let mut host = experiment.conversation(Instant(1)).expect("a framed host");
+/// while !host.is_over() {
+///     let now = host.deadline(); // wait until then, or for a byte
+///     let Some(frame) = host.poll(now) else { continue };
+///     // Write `frame` to your port. A byte takes 1389 cycles here.
+///     host.sent(now + Cycles(1389 * frame.len() as u64));
+///     // Pass each byte that you read: host.receive(byte, now).
+/// }
+/// assert_eq!(host.progress().next().expect("one job").to_string(), "given up: no reply");
+/// ```
 #[derive(Clone, Debug)]
 pub struct Conversation {
     bit: Cycles,
@@ -63,15 +80,14 @@ pub struct Conversation {
     attempts: u8,
     pub(super) peers: Vec<Peer>,
     phase: Phase,
-    /// When the line is free: ten bit times after the last exchange.
-    quiet_from: Instant,
+    /// When the line is idle: ten bit times after the last exchange.
+    idle_from: Instant,
     deframer: Deframer,
     counts: Counts,
 }
 
 impl Conversation {
-    /// Begins in cycle `start`. `bit` is the bit time of the line.
-    #[must_use]
+    /// A conversation that begins in cycle `start`. `bit` is the bit time of the line.
     pub fn new(jobs: Vec<Job>, settings: &Settings, bit: Cycles, start: Instant) -> Self {
         let timeout = settings.reply_timeout_cycles.map_or(TIMEOUT_BITS * bit.0, u64::from);
         Self {
@@ -80,42 +96,41 @@ impl Conversation {
             attempts: settings.max_attempts,
             peers: jobs.into_iter().map(|job| Peer::new(job, settings, start)).collect(),
             phase: Phase::Pausing { until: start },
-            quiet_from: start,
+            idle_from: start,
             deframer: Deframer::default(),
             counts: Counts::default(),
         }
     }
 
-    /// Adds a delay of the system to the time-out.
-    #[must_use]
+    /// Adds a delay of the operating system to the time-out.
     pub fn with_slack(mut self, slack: Cycles) -> Self {
         self.timeout = Cycles(self.timeout.0 + slack.0);
         self
     }
 
-    /// For a real line: each job begins with a tick without steps that the controller must confirm. After that, a reset
-    /// shows in its sequence number and its count of ticks.
-    #[must_use]
+    /// Begins each job with a tick without steps, for a real line. After that tick, a reset of the controller is visible in
+    /// its sequence number and its count of ticks.
     pub fn with_opening_tick(mut self) -> Self {
         self.peers.iter_mut().for_each(|peer| peer.opening_tick = true);
         self
     }
 
+    /// Progress of each job.
     pub fn progress(&self) -> impl Iterator<Item = Progress> {
         self.peers.iter().map(|peer| peer.progress)
     }
 
-    /// Ticks that each controller has acknowledged.
+    /// Acknowledged ticks of each job.
     pub fn acknowledged(&self) -> impl Iterator<Item = u32> {
         self.peers.iter().map(|peer| peer.acknowledged)
     }
 
-    /// What each controller has reported, with its job.
+    /// Each job with the reports of its controller.
     pub fn known(&self) -> impl Iterator<Item = (&Job, &Known)> {
         self.peers.iter().map(|peer| (&peer.job, &peer.known))
     }
 
-    /// Positions after the first `ticks` ticks of a job; `None` where the start is unknown.
+    /// Expected positions after the first `ticks` ticks of a job; `None` before the controller has reported its positions.
     pub fn expected(&mut self, job: usize, ticks: u32) -> Option<Vec<i32>> {
         self.peers.get_mut(job)?.expected(ticks)
     }
@@ -125,20 +140,23 @@ impl Conversation {
         self.peers.get_mut(job).map_or_else(Vec::new, |peer| peer.sums(ticks))
     }
 
+    /// Counts of frames and replies.
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
+    /// Whether all jobs are done or given up.
     pub fn is_over(&self) -> bool {
         self.phase == Phase::Over
     }
 
+    /// Whether a reply is pending.
     pub const fn is_waiting(&self) -> bool {
         matches!(self.phase, Phase::Waiting { .. })
     }
 
     /// The job whose frame is being sent or waits for its reply, and the frame's kind.
-    pub const fn under_way(&self) -> Option<(usize, Kind)> {
+    pub const fn pending_frame(&self) -> Option<(usize, Kind)> {
         match self.phase {
             Phase::Sending(exchange) | Phase::Waiting { exchange, .. } => {
                 Some((exchange.peer, exchange.kind))
@@ -147,8 +165,8 @@ impl Conversation {
         }
     }
 
-    /// The cycle in which to call [`Self::poll`] if nothing is received before; [`Instant::NEVER`] while a frame is sent
-    /// and at the end.
+    /// The cycle of the next [`Self::poll`] if no byte is received before; [`Instant::NEVER`] while a frame is being sent and
+    /// at the end.
     pub const fn deadline(&self) -> Instant {
         match self.phase {
             Phase::Pausing { until } | Phase::Waiting { until, .. } => until,
@@ -156,13 +174,13 @@ impl Conversation {
         }
     }
 
-    /// Cycle `now`: the frame to send from the next cycle on, if one is due.
+    /// The frame to send from the next cycle on, if one is due in cycle `now`.
     pub fn poll(&mut self, now: Instant) -> Option<Vec<u8>> {
         match self.phase {
             Phase::Pausing { until } if until <= now => self.next_exchange(now),
             Phase::Waiting { exchange, until } if until <= now => {
                 if let Some(peer) = self.peers.get_mut(exchange.peer) {
-                    peer.flush = true;
+                    peer.needs_delimiter = true;
                 }
                 self.pause(now, exchange.peer, Cycles(0));
                 None
@@ -171,7 +189,7 @@ impl Conversation {
         }
     }
 
-    /// The frame has left: `end` is the first cycle after its last stop bit.
+    /// Reports that the frame was sent; `end` is the first cycle after its last stop bit.
     pub fn sent(&mut self, end: Instant) {
         let Phase::Sending(exchange) = self.phase else { return };
         self.deframer = Deframer::default();
@@ -184,13 +202,13 @@ impl Conversation {
         Cycles(self.timeout.0 + BYTE_BITS * additional * self.bit.0)
     }
 
-    /// A byte was received in cycle `now`.
+    /// Reports a byte that was received in cycle `now`.
     pub fn receive(&mut self, byte: u8, now: Instant) {
         self.receive_unless(byte, now, || false);
     }
 
-    /// As [`Self::receive`]; a reply is dropped where `misses`.
-    pub(super) fn receive_unless(&mut self, byte: u8, now: Instant, misses: impl FnOnce() -> bool) {
+    /// As [`Self::receive`]; drops a reply if `misses_reply` returns true.
+    pub(super) fn receive_unless(&mut self, byte: u8, now: Instant, misses_reply: impl FnOnce() -> bool) {
         let Phase::Waiting { exchange: Exchange { peer: index, kind, ticks }, .. } = self.phase else {
             return;
         };
@@ -199,13 +217,13 @@ impl Conversation {
             Some(Deframed::Frame(frame)) => Reply::parse(frame).map(|reply| (reply, frame.positions())),
             Some(_) => None,
         };
-        let missed = misses();
+        let missed = misses_reply();
         let Some(peer) = self.peers.get_mut(index) else { return };
         let reply = reply.filter(|(reply, _)| reply.address == peer.job.address && !missed);
         match reply.map(|(reply, positions)| (reply.result, reply.status, positions)) {
-            Some((Ok(taken), status, positions)) if taken == kind && peer.fits(kind, status) => {
+            Some((Ok(taken), status, positions)) if taken == kind && peer.is_current(kind, status) => {
                 self.counts.replies += 1;
-                (peer.attempts, peer.flush) = (0, false);
+                (peer.attempts, peer.needs_delimiter) = (0, false);
                 let wait = peer.acknowledge((kind, ticks), (status, positions), now);
                 self.pause(now, index, wait);
             }
@@ -219,19 +237,19 @@ impl Conversation {
         }
     }
 
-    /// Stops: after the pending exchange every unfinished controller gets STOP until it acknowledges it, then STATUS and
+    /// Stops all unfinished jobs: after the pending exchange each controller gets STOP until it acknowledges, then STATUS and
     /// POSITIONS.
     pub fn stop(&mut self, now: Instant) {
         self.peers.iter_mut().filter(|peer| peer.is_open()).for_each(|peer| peer.stop(now));
         if let Phase::Pausing { .. } = self.phase {
-            self.phase = Phase::Pausing { until: self.quiet_from.max(now) };
+            self.phase = Phase::Pausing { until: self.idle_from.max(now) };
         }
     }
 
-    /// A crashed host restarts with its ticks and its start.
+    /// The host crashes and starts over; it still has its ticks and the first reports.
     pub(super) fn crash(&mut self, now: Instant) {
         self.counts.crashes += 1;
-        // A reply of the maximum length may be on the line.
+        // The longest reply may be on the line.
         let channels = self.peers.iter().map(|peer| peer.job.channels).max().unwrap_or(0);
         let until = now + self.timeout_of(Kind::Positions, channels);
         self.peers.iter_mut().filter(|peer| peer.is_open()).for_each(|peer| peer.restart(now, until));
@@ -243,28 +261,28 @@ impl Conversation {
         if let Some(peer) = self.peers.get_mut(peer) {
             peer.ready_at = until.max(now + span);
         }
-        self.quiet_from = until;
+        self.idle_from = until;
         self.phase = Phase::Pausing { until };
     }
 
     fn next_exchange(&mut self, now: Instant) -> Option<Vec<u8>> {
         for peer in self.peers.iter_mut().filter(|peer| peer.is_open()) {
-            let tired = peer.attempts >= self.attempts || peer.stalls(self.attempts);
+            let has_no_attempt_left = peer.attempts >= self.attempts || peer.is_stalled(self.attempts);
             if now.0 >= LAST_BEGIN {
                 peer.progress = Progress::GivenUp(GivenUp::OutOfTime);
-            } else if tired && peer.ready_at <= now {
+            } else if has_no_attempt_left && peer.ready_at <= now {
                 peer.progress = Progress::GivenUp(GivenUp::NoReply);
             }
         }
-        let waiting = || self.peers.iter().enumerate().filter(|(_, peer)| peer.is_open());
-        let urgent = waiting()
+        let open = || self.peers.iter().enumerate().filter(|(_, peer)| peer.is_open());
+        let urgent = open()
             .filter(|(_, peer)| peer.ready_at <= now)
-            .min_by_key(|(index, peer)| (peer.dry_at, *index))
+            .min_by_key(|(index, peer)| (peer.queue_empty_at, *index))
             .map(|(index, _)| index);
         if let Some(index) = urgent {
             return self.begin(index);
         }
-        self.phase = match waiting().map(|(_, peer)| peer.ready_at).min() {
+        self.phase = match open().map(|(_, peer)| peer.ready_at).min() {
             Some(until) => Phase::Pausing { until },
             None => Phase::Over,
         };
@@ -273,18 +291,18 @@ impl Conversation {
 
     fn begin(&mut self, index: usize) -> Option<Vec<u8>> {
         let peer = self.peers.get_mut(index)?;
-        let (kind, ticks) = peer.due();
+        let (kind, ticks) = peer.due_frame();
         let body = match kind {
             Kind::Ticks => Ticks::emit(peer.seq, peer.job.channels, &peer.commands(ticks)),
             _ => Vec::new(),
         };
         let mut bytes = frame::emit(peer.job.address, kind as u8, &body);
-        if peer.flush {
+        if peer.needs_delimiter {
             bytes.insert(0, frame::DELIMITER);
         }
         self.counts.repeated += u64::from(peer.attempts > 0);
         peer.attempts = peer.attempts.saturating_add(1);
-        peer.since_progress = peer.since_progress.saturating_add(1);
+        peer.frames_without_progress = peer.frames_without_progress.saturating_add(1);
         self.counts.frames += 1;
         self.phase = Phase::Sending(Exchange { peer: index, kind, ticks });
         Some(bytes)
@@ -303,7 +321,7 @@ mod tests {
         };
         use stepscope_scenario::Host;
 
-        // One tick without steps, for a controller that answers at once.
+        // One tick without steps, for a controller that replies immediately.
         let job =
             Job { address: 0, channels: 1, tick: Cycles(100), queue_depth: 16, commands: [0x80].into() };
         let mut host = Conversation::new(vec![job], &Host::default(), Cycles(16), Instant(1));

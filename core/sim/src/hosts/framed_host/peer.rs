@@ -9,23 +9,28 @@ use stepscope_peripheral::wire::frame::{self, Kind, Reason, State, Status};
 use stepscope_peripheral::wire::packet::MAX_STEPS;
 use stepscope_scenario::Host as Settings;
 
+/// The ticks for a controller.
 #[derive(Clone, Debug)]
 pub struct Job {
+    /// Address of the controller.
     pub address: u8,
-    /// Its channels: the bytes of a tick.
+    /// Channels of the controller, which are the bytes of a tick.
     pub channels: u8,
+    /// Length of a tick.
     pub tick: Cycles,
+    /// Ticks that the controller can queue.
     pub queue_depth: u8,
     /// One byte per channel, tick after tick.
     pub commands: Rc<[u8]>,
 }
 
 impl Job {
+    /// Number of ticks.
     pub fn ticks(&self) -> u32 {
         (self.commands.len() / usize::from(self.channels.max(1))) as u32
     }
 
-    /// Maximum ticks per frame: half of the queue, so that the other half runs meanwhile.
+    /// Maximum ticks per frame: half of the queue, so that the other half runs while a frame is sent.
     pub fn ticks_per_frame(&self, settings: &Settings) -> u8 {
         settings.ticks_per_frame.min(frame::MAX_TICKS).min(self.queue_depth / 2).max(1)
     }
@@ -58,10 +63,13 @@ pub enum Progress {
 
 /// Why the host gave up on a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum GivenUp {
-    /// No answer to any attempt.
+    /// No reply to any attempt.
     NoReply,
+    /// The controller is stopped.
     Stopped,
+    /// It refused a frame.
     Refused(Reason),
     /// Idle, with fewer ticks done than acknowledged.
     TicksMissing,
@@ -83,10 +91,7 @@ pub enum GivenUp {
     /// Its sequence number or its count of ticks went back.
     Reset,
     /// It has another number of channels than the ticks.
-    OtherChannels {
-        expected: u8,
-        reported: u8,
-    },
+    OtherChannels { expected: u8, reported: u8 },
     /// The host was stopped, and the controller has acknowledged STOP.
     Interrupted,
     /// The maximum length of a run is over.
@@ -94,7 +99,7 @@ pub enum GivenUp {
 }
 
 impl Progress {
-    #[must_use]
+    /// The name in reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Opening => "opening",
@@ -151,15 +156,21 @@ impl fmt::Display for Progress {
 /// The reports of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Known {
+    /// The first status while it was idle.
     pub opening: Option<Status>,
-    /// Its status after the opening tick of a real line.
+    /// The status after the opening tick of a real line.
     pub started: Option<Status>,
+    /// The last status.
     pub last: Option<Status>,
-    /// Ticks of the job that it has done, by the last plausible reply.
+    /// Ticks of the job that are done, by the last plausible reply.
     done: Option<u32>,
+    /// The positions before the first tick.
     pub opening_positions: Option<Positions>,
+    /// The last positions.
     pub positions: Option<Positions>,
+    /// Whether it does not support POSITIONS.
     pub hides_positions: bool,
+    /// Whether it has acknowledged STOP.
     pub stop_acknowledged: bool,
 }
 
@@ -169,35 +180,39 @@ impl Known {
         self.done
     }
 
+    /// Ticks done since the start of the job.
     fn counted(&self, status: Status) -> Option<u32> {
         let began = self.started.or(self.opening)?;
         Some(status.ticks_done.wrapping_sub(began.ticks_done))
     }
 }
 
+/// A controller as the host sees it.
 #[derive(Clone, Debug)]
 pub(super) struct Peer {
     pub(super) job: Job,
     sums: TickSums,
-    pub(super) max: u32,
+    max_ticks_per_frame: u32,
     pub(super) progress: Progress,
-    /// While it stops: the frame that is due.
+    /// The frame that is due while the controller is being stopped.
     stop_stage: Kind,
     pub(super) known: Known,
     /// Invariant: at most the ticks of the job.
     pub(super) acknowledged: u32,
+    /// Sequence number of the next TICKS frame.
     pub(super) seq: u8,
+    /// Free entries of the controller's queue.
     pub(super) free: u32,
-    /// When the next frame may be sent, and when its queue runs dry.
+    /// When the next frame may be sent.
     pub(super) ready_at: Instant,
-    pub(super) dry_at: Instant,
+    pub(super) queue_empty_at: Instant,
     /// Attempts of the pending frame.
     pub(super) attempts: u8,
-    pub(super) since_progress: u32,
-    /// The next frame begins with a delimiter, because a broken one may wait for it.
-    pub(super) flush: bool,
+    pub(super) frames_without_progress: u32,
+    /// Whether the next frame must begin with a delimiter, which ends an incomplete frame in the receiver.
+    pub(super) needs_delimiter: bool,
     pub(super) opening_tick: bool,
-    /// Opening ticks that were acknowledged, and whether the last one is not done yet.
+    /// Acknowledged opening ticks, and whether the last one is not done yet.
     opening_ticks: u32,
     awaits_opening_tick: bool,
 }
@@ -205,7 +220,7 @@ pub(super) struct Peer {
 impl Peer {
     pub(super) fn new(job: Job, settings: &Settings, start: Instant) -> Self {
         Self {
-            max: job.ticks_per_frame(settings).into(),
+            max_ticks_per_frame: job.ticks_per_frame(settings).into(),
             sums: TickSums::new(Rc::clone(&job.commands), job.channels),
             progress: Progress::Opening,
             stop_stage: Kind::Stop,
@@ -214,10 +229,10 @@ impl Peer {
             seq: 0,
             free: 0,
             ready_at: start,
-            dry_at: start,
+            queue_empty_at: start,
             attempts: 0,
-            since_progress: 0,
-            flush: false,
+            frames_without_progress: 0,
+            needs_delimiter: false,
             opening_tick: false,
             opening_ticks: 0,
             awaits_opening_tick: false,
@@ -225,10 +240,10 @@ impl Peer {
         }
     }
 
-    /// Whether too many frames brought no progress: `attempts` per place of its queue, which may have to run empty
-    /// first, and for the exchanges around it.
-    pub(super) fn stalls(&self, attempts: u8) -> bool {
-        self.since_progress > u32::from(attempts) * (u32::from(self.job.queue_depth) + 5)
+    /// Whether too many frames brought no progress: `attempts` per entry of the queue, which may have to run empty first,
+    /// and per exchange before and after it.
+    pub(super) fn is_stalled(&self, attempts: u8) -> bool {
+        self.frames_without_progress > u32::from(attempts) * (u32::from(self.job.queue_depth) + 5)
     }
 
     pub(super) const fn is_open(&self) -> bool {
@@ -239,10 +254,12 @@ impl Peer {
         self.job.ticks() - self.acknowledged
     }
 
-    /// The frame that is due: its kind and number of ticks.
-    pub(super) fn due(&self) -> (Kind, u32) {
+    /// Kind and number of ticks of the frame that is due.
+    pub(super) fn due_frame(&self) -> (Kind, u32) {
         match self.progress {
-            Progress::Filling => (Kind::Ticks, self.max.min(self.free).min(self.left()).max(1)),
+            Progress::Filling => {
+                (Kind::Ticks, self.max_ticks_per_frame.min(self.free).min(self.left()).max(1))
+            }
             // The opening tick.
             Progress::Starting if !self.awaits_opening_tick => (Kind::Ticks, 0),
             Progress::Locating | Progress::Verifying => (Kind::Positions, 0),
@@ -263,26 +280,27 @@ impl Peer {
         commands.get(from..from + ticks as usize * channels).unwrap_or_default().to_vec()
     }
 
+    /// Time until the queue is empty.
     const fn queued(&self, free: u32) -> Cycles {
         Cycles((self.job.queue_depth as u64).saturating_sub(free as u64) * self.job.tick.0)
     }
 
-    /// A late answer to the frame before has another sequence number.
-    pub(super) fn fits(&self, kind: Kind, status: Status) -> bool {
+    /// Whether this is the reply to the pending frame. A late reply to the previous one has another sequence number.
+    pub(super) fn is_current(&self, kind: Kind, status: Status) -> bool {
         kind != Kind::Ticks || status.expected_seq == self.seq.wrapping_add(1)
     }
 
     pub(super) fn stop(&mut self, now: Instant) {
         (self.progress, self.stop_stage) = (Progress::Stopping, Kind::Stop);
-        (self.attempts, self.since_progress, self.ready_at) = (0, 0, now);
+        (self.attempts, self.frames_without_progress, self.ready_at) = (0, 0, now);
     }
 
     pub(super) fn restart(&mut self, now: Instant, until: Instant) {
         self.progress = Progress::Opening;
-        (self.ready_at, self.dry_at, self.flush) = (until, now, true);
+        (self.ready_at, self.queue_empty_at, self.needs_delimiter) = (until, now, true);
     }
 
-    /// Takes a reply to the pending frame; returns the time until the next one is due.
+    /// Handles a reply to the pending frame; returns the time until the next frame.
     pub(super) fn acknowledge(
         &mut self,
         (kind, ticks): (Kind, u32),
@@ -295,14 +313,14 @@ impl Peer {
             debug_assert!(self.acknowledged <= self.job.ticks(), "more ticks are acknowledged than sent");
             self.seq = self.seq.wrapping_add(1);
             if ticks > 0 {
-                self.since_progress = 0;
+                self.frames_without_progress = 0;
             } else {
                 self.opening_ticks += 1;
                 self.awaits_opening_tick = true;
             }
         }
         let before = self.known.done;
-        let counted = self.note_status(status);
+        let counted = self.store_status(status);
         if self.progress == Progress::Stopping {
             self.after_stop(kind);
             return Cycles(0);
@@ -313,18 +331,18 @@ impl Peer {
         let ready = status.state == State::Ready;
         match self.progress {
             Progress::Opening if ready => self.open(status),
-            Progress::Locating if ready && self.is_where_it_was(status) => {
-                self.progress = self.located(positions).map_or(self.first_stage(), Progress::GivenUp);
+            Progress::Locating if ready && self.has_not_moved(status) => {
+                self.progress = self.check_positions(positions).map_or(self.first_stage(), Progress::GivenUp);
             }
             Progress::Starting if kind == Kind::Ticks || !ready => {
                 return Cycles(self.queued(status.free.into()).0 + self.job.tick.0);
             }
             Progress::Starting if self.did_opening_ticks(status) => self.start(status),
             Progress::Starting => {
-                self.forget();
+                self.start_over();
                 return self.job.tick;
             }
-            // Its queue was emptied: it reports fewer ticks than before, or more than it took.
+            // A reset empties the queue: the controller reports fewer ticks than before, or more than it accepted.
             Progress::Filling if counted < before || counted > Some(self.acknowledged) => {
                 self.progress = Progress::GivenUp(GivenUp::Reset);
             }
@@ -341,14 +359,14 @@ impl Peer {
                 self.progress =
                     Progress::GivenUp(if done < commanded { GivenUp::TicksMissing } else { other });
             }
-            Progress::Verifying if ready && self.is_where_it_was(status) => {
-                self.progress = self.located(positions).map_or(Progress::Done, Progress::GivenUp);
+            Progress::Verifying if ready && self.has_not_moved(status) => {
+                self.progress = self.check_positions(positions).map_or(Progress::Done, Progress::GivenUp);
             }
-            // Another host moves it: open or confirm again when idle.
+            // Another host moves the controller: open or confirm again when it is idle.
             Progress::Locating => {
                 self.progress = Progress::Opening;
                 if self.known.opening_positions.is_none() {
-                    self.forget();
+                    self.start_over();
                 }
                 return self.job.tick;
             }
@@ -360,8 +378,8 @@ impl Peer {
             _ => {}
         }
         self.free = status.free.into();
-        self.dry_at = now + self.queued(self.free);
-        self.next_due()
+        self.queue_empty_at = now + self.queued(self.free);
+        self.time_to_next_frame()
     }
 
     /// The controller is idle: finds its sequence number and the first tick that is not done.
@@ -371,7 +389,7 @@ impl Peer {
         let done = status.ticks_done.wrapping_sub(base);
         self.acknowledged = done.min(commanded);
         if self.acknowledged > known {
-            self.since_progress = 0;
+            self.frames_without_progress = 0;
         }
         self.seq = status.expected_seq;
         self.known.done = Some(self.acknowledged);
@@ -386,49 +404,49 @@ impl Peer {
         if self.opening_tick && self.known.started.is_none() { Progress::Starting } else { Progress::Filling }
     }
 
-    /// Whether it has done the opening ticks and nothing else.
+    /// Whether the controller has done the opening ticks and no others.
     fn did_opening_ticks(&self, status: Status) -> bool {
         let done = self.known.opening.map(|opening| status.ticks_done.wrapping_sub(opening.ticks_done));
         done == Some(self.opening_ticks) && status.expected_seq == self.seq
     }
 
-    /// A controller that was reset expects 0 and has done 0 ticks: if this one reports the same, another opening tick
-    /// is needed to tell both apart.
+    /// A controller that was reset expects sequence number 0 and has done 0 ticks. If this one reports the same, another
+    /// opening tick is needed to distinguish them.
     fn start(&mut self, status: Status) {
         self.awaits_opening_tick = false;
         if status.expected_seq != 0 && status.ticks_done != 0 {
             (self.known.started, self.known.done) = (Some(status), Some(0));
-            (self.progress, self.since_progress) = (Progress::Filling, 0);
+            (self.progress, self.frames_without_progress) = (Progress::Filling, 0);
         }
     }
 
-    /// Starts over; nothing of the job has been sent.
-    fn forget(&mut self) {
+    /// Starts over, because no tick of the job has been sent.
+    fn start_over(&mut self) {
         self.progress = Progress::Opening;
         (self.known.opening, self.known.opening_positions, self.known.done) = (None, None, None);
         (self.acknowledged, self.opening_ticks, self.awaits_opening_tick) = (0, 0, false);
     }
 
     /// Stores a status; returns its count of ticks since the first one.
-    fn note_status(&mut self, status: Status) -> Option<u32> {
+    fn store_status(&mut self, status: Status) -> Option<u32> {
         self.known.last = Some(status);
         let counted = self.known.counted(status);
-        // Then the last ticks may have been taken without the host's knowledge.
+        // The controller may have accepted the last ticks although the host received no reply.
         let knows_less = matches!(self.progress, Progress::Opening | Progress::Stopping);
         let max = if knows_less { self.job.ticks() } else { self.acknowledged };
-        let can_be = knows_less || status.expected_seq == self.seq;
-        if can_be && counted.is_some_and(|counted| counted <= max) {
+        let is_plausible = knows_less || status.expected_seq == self.seq;
+        if is_plausible && counted.is_some_and(|counted| counted <= max) {
             self.known.done = counted;
         }
         counted
     }
 
-    fn is_where_it_was(&self, status: Status) -> bool {
+    fn has_not_moved(&self, status: Status) -> bool {
         self.known.counted(status) == Some(self.acknowledged) && status.expected_seq == self.seq
     }
 
-    /// Compares positions with the sums of the acknowledged ticks. The first ones are the start.
-    fn located(&mut self, reported: Option<Positions>) -> Option<GivenUp> {
+    /// Compares the reported positions with the sums of the acknowledged ticks. The first reported positions are the start.
+    fn check_positions(&mut self, reported: Option<Positions>) -> Option<GivenUp> {
         let reported = reported?;
         let (expected, reported_channels) = (self.job.channels, reported.as_slice().len() as u8);
         if reported_channels != expected {
@@ -465,36 +483,35 @@ impl Peer {
             Kind::Status | Kind::Positions if self.stop_stage == kind => {
                 self.progress = Progress::GivenUp(GivenUp::Interrupted);
             }
-            // A late answer to a frame from before the stop.
+            // A late reply to a frame from before the stop.
             _ => {}
         }
     }
 
-    fn next_due(&mut self) -> Cycles {
+    fn time_to_next_frame(&mut self) -> Cycles {
         if self.progress != Progress::Filling {
             return Cycles(0);
         }
         if self.left() == 0 {
             self.progress = Progress::Confirming;
-            // The queue, and one more for the tick that runs.
-            let waiting = self.queued(self.free);
-            return Cycles(waiting.0 + self.job.tick.0);
+            // The queue, and the tick that runs.
+            return Cycles(self.queued(self.free).0 + self.job.tick.0);
         }
-        let wanted = self.max.min(self.left());
+        let wanted = self.max_ticks_per_frame.min(self.left());
         let missing = wanted.saturating_sub(self.free);
         self.free = self.free.max(wanted);
         Cycles(u64::from(missing) * self.job.tick.0)
     }
 
-    /// Takes a refusal; returns the time until the next frame.
+    /// Handles a refusal; returns the time until the next frame.
     pub(super) fn refused(&mut self, kind: Kind, reason: Reason, status: Status) -> Cycles {
-        self.note_status(status);
+        self.store_status(status);
         let unknown = kind == Kind::Positions && reason == Reason::UnknownKind;
         self.known.hides_positions |= unknown;
         match (self.progress, reason) {
             (Progress::Locating, _) if unknown => {
                 self.progress = self.first_stage();
-                return self.next_due();
+                return self.time_to_next_frame();
             }
             (Progress::Verifying, _) if unknown => self.progress = Progress::Counted,
             (Progress::Stopping, _) if unknown || kind != self.stop_stage => {
@@ -502,7 +519,7 @@ impl Peer {
                 return Cycles(0);
             }
             (_, Reason::QueueFull | Reason::Busy) => {}
-            (Progress::Starting, Reason::BadSeq) => self.forget(),
+            (Progress::Starting, Reason::BadSeq) => self.start_over(),
             (_, Reason::BadSeq) => self.progress = Progress::GivenUp(GivenUp::Reset),
             (_, Reason::Stopped) => self.progress = Progress::GivenUp(GivenUp::Stopped),
             (_, other) => self.progress = Progress::GivenUp(GivenUp::Refused(other)),

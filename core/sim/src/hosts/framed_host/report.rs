@@ -1,5 +1,4 @@
-//! The report at the end of a conversation, for the command and the page (LIVE H3). "Done" is only what a controller has
-//! confirmed.
+//! The report at the end of a conversation (LIVE H3). Only ticks that a controller has confirmed count as done.
 
 use super::{Conversation, Counts, Known, Progress};
 use crate::Experiment;
@@ -17,7 +16,6 @@ use stepscope_peripheral::{
 use stepscope_scenario::{Noise, Scenario};
 
 /// The scenario without its end and without noise, for a real line.
-#[must_use]
 pub fn for_real_line(mut scenario: Scenario) -> Scenario {
     scenario.run_cycles = None;
     scenario.line.noise = Noise::default();
@@ -25,17 +23,26 @@ pub fn for_real_line(mut scenario: Scenario) -> Scenario {
     scenario
 }
 
+/// The report about one controller.
 #[derive(Clone, Debug)]
 pub struct ReportRow {
+    /// Index of the controller in the scenario.
     pub controller: usize,
+    /// Its address on the line.
     pub address: u8,
+    /// Ticks of the job.
     pub ticks: u32,
+    /// Acknowledged ticks.
     pub acknowledged: u32,
+    /// How far the host has come.
     pub progress: Progress,
+    /// Positions after the done ticks, if the start is known.
     pub expected: Option<Vec<i32>>,
-    /// Travel of these ticks, and with the next one, which STOP may have interrupted anywhere.
+    /// Travel of the done ticks, without and with the next tick, which STOP may have interrupted.
     pub bounds: Option<(Vec<i32>, Vec<i32>)>,
+    /// Confirmed ticks.
     pub done: Option<u32>,
+    /// The reports of the controller.
     pub known: Known,
     stopped: bool,
 }
@@ -117,14 +124,17 @@ impl fmt::Display for ReportRow {
     }
 }
 
+/// The report about all controllers with ticks.
 #[derive(Clone, Debug)]
 pub struct Report {
+    /// One per controller.
     pub rows: Vec<ReportRow>,
+    /// Counts of frames and replies.
     pub counts: Counts,
 }
 
 impl Report {
-    /// `stopped`: the host was stopped.
+    /// The report of a conversation; `stopped` if the host was stopped.
     pub fn new(experiment: &Experiment, host: &mut Conversation, stopped: bool) -> Self {
         let mut rows = Vec::new();
         for controller in 0..experiment.controllers() {
@@ -155,7 +165,7 @@ impl Report {
         Self { rows, counts: host.counts() }
     }
 
-    /// The first doubt of a controller; `None` if all jobs are done.
+    /// Why the first unconfirmed job is not confirmed; `None` if all jobs are done.
     pub fn doubt(&self) -> Option<String> {
         self.rows.iter().find_map(ReportRow::doubt)
     }
@@ -174,8 +184,10 @@ impl fmt::Display for Report {
     }
 }
 
+/// The status line during a conversation; ticks are those of all jobs together.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Standing {
+#[allow(missing_docs, reason = "the names say what is counted")]
+pub struct HostStatus {
     pub progress: Vec<Progress>,
     pub accepted: u64,
     pub done: u64,
@@ -183,8 +195,8 @@ pub struct Standing {
     pub counts: Counts,
 }
 
-impl Standing {
-    #[must_use]
+impl HostStatus {
+    /// The current status.
     pub fn new(host: &Conversation) -> Self {
         let (mut done, mut ticks) = (0, 0);
         for (job, known) in host.known() {
@@ -196,14 +208,14 @@ impl Standing {
     }
 }
 
-impl fmt::Display for Standing {
+impl fmt::Display for HostStatus {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { progress, accepted, done, ticks, counts } = self;
-        let words: Vec<&str> = progress.iter().map(|progress| progress.name()).collect();
+        let names: Vec<&str> = progress.iter().map(|progress| progress.name()).collect();
         write!(
             out,
             "{}: {accepted} ticks accepted, {done} done, {} left, {} repeats, {} NAKs",
-            words.join(" "),
+            names.join(" "),
             ticks - accepted,
             counts.repeated,
             counts.refused

@@ -1,4 +1,4 @@
-//! The clock of a session: from monotonic time to cycles, set back when the machine does not keep up (LIVE H1).
+//! The clock of a session: converts monotonic time to cycles, and is set back if the computer is too slow (LIVE H1).
 //!
 //! ```text
 //! cycle(t) = floor(t*clock_hz*pace) - cycles that it was set back
@@ -15,10 +15,10 @@ pub struct Pace {
 }
 
 impl Pace {
+    /// Real time.
     pub const REAL_TIME: Self = Self { millionths: 1_000_000 };
 
-    /// In millionths of real time; `None` outside 0.001 to 100.
-    #[must_use]
+    /// A pace in millionths of real time; `None` outside 0.001 to 100.
     pub fn new(millionths: u64) -> Option<Self> {
         (1000..=100_000_000).contains(&millionths).then_some(Self { millionths })
     }
@@ -30,7 +30,7 @@ impl FromStr for Pace {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let pace = text.parse::<f64>().ok().filter(|pace| (0.001..=100.0).contains(pace));
         // Half a millionth rounds.
-        pace.and_then(|pace| Self::new((pace * 1e6 + 0.5) as u64)).ok_or("give 0.001 to 100, or `max`")
+        pace.and_then(|pace| Self::new((pace * 1e6 + 0.5) as u64)).ok_or("use 0.001 to 100, or `max`")
     }
 }
 
@@ -40,25 +40,28 @@ impl fmt::Display for Pace {
     }
 }
 
+/// How often and how far a clock was set back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Setbacks {
+    /// Number of setbacks; consecutive ones count once.
     pub count: u64,
+    /// Their sum.
     pub cycles: Cycles,
 }
 
+/// The clock of a session.
 #[derive(Clone, Debug)]
 pub struct SessionClock {
     clock_hz: u32,
     pace: Pace,
     lag_ns: u64,
     setbacks: Setbacks,
-    /// Whether the last call set it back: then the next one continues the same lag.
+    /// Whether the last call set the clock back; a setback in the next call belongs to the same lag.
     behind: bool,
 }
 
 impl SessionClock {
     /// A clock at cycle 0 and time 0 that may be `lag_ns` nanoseconds ahead of the model.
-    #[must_use]
     pub fn new(clock_hz: u32, pace: Pace, lag_ns: u64) -> Self {
         Self { clock_hz, pace, lag_ns, setbacks: Setbacks::default(), behind: false }
     }
@@ -80,8 +83,7 @@ impl SessionClock {
         elapsed_ns.saturating_sub(self.nanos(Cycles(cycle.0 + self.setbacks.cycles.0)))
     }
 
-    /// The cycle up to which the model may run at a time, having reached `reached`. Beyond the allowed lag the clock
-    /// is set back.
+    /// The cycle up to which the model, which has reached `reached`, may run. A lag beyond the allowed one sets the clock back.
     pub fn target(&mut self, elapsed_ns: u64, reached: Instant) -> Instant {
         let now = self.cycles(elapsed_ns).saturating_sub(self.setbacks.cycles.0);
         let excess = now.saturating_sub(reached.0).saturating_sub(self.cycles(self.lag_ns));
@@ -93,6 +95,7 @@ impl SessionClock {
         Instant(now - excess)
     }
 
+    /// The setbacks so far.
     pub const fn setbacks(&self) -> Setbacks {
         self.setbacks
     }
@@ -103,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cycle_is_the_floor_of_the_time_and_a_time_the_least_that_has_it() {
+    fn cycles_are_rounded_down_and_times_up() {
         // Clock, pace, nanoseconds, cycle.
         for (clock_hz, pace, ns, cycle) in [
             (16_000_000, "1", 62, 0),

@@ -1,4 +1,4 @@
-//! A bounded buffer of bytes that wait for the line (LIVE H1). While it is full, nothing is read, so the host waits.
+//! A bounded buffer of bytes for the line (LIVE H1). While it is full, nothing is read from the port, so the host waits.
 
 use super::Session;
 use alloc::{collections::VecDeque, vec::Vec};
@@ -29,14 +29,17 @@ impl Input {
     /// Maximum number of bytes that wait: 1.4 s of a line at 115200 baud.
     pub const CAPACITY: usize = 16 << 10;
 
+    /// Number of bytes that still fit.
     pub fn room(&self) -> usize {
         Self::CAPACITY.saturating_sub(self.bytes.len())
     }
 
+    /// Number of bytes that wait.
     pub fn len(&self) -> usize {
         self.bytes.len()
     }
 
+    /// Whether no byte waits.
     pub fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
@@ -48,8 +51,8 @@ impl Input {
         count
     }
 
-    /// Hands over the bytes that begin on the line by cycle `until`. If called before each [`Session::advance`], every byte
-    /// has the cycle that it would have if it had been received at once.
+    /// Passes the bytes that begin on the line by cycle `until` to the session. If this is called before each
+    /// [`Session::advance`], every byte has the same cycle as if all had been received immediately.
     pub fn feed(&mut self, session: &mut Session, until: Instant) {
         let count = session.fits_until(until, self.bytes.len());
         if count > 0 {

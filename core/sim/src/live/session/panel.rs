@@ -17,14 +17,15 @@ use stepscope_scenario::PanelInput;
 /// Maximum recorded inputs, as in a script.
 pub const MAX_RECORDED_INPUTS: usize = *limits::INPUTS.end() as usize;
 
-/// A recording with twice as many groups could not be run.
+/// Whether half of the groups of a run have begun; the recording ends there, because it must be runnable.
 pub(super) fn begins_many(machine: &StandAlone) -> bool {
     machine.too_many_groups().is_none() && machine.groups_begun() > limits::MAX_GROUPS_BEGUN / 2
 }
 
+/// An input and the index of its controller.
 type OfController = (usize, Input);
 
-/// Presses, and levels that end later.
+/// Inputs entered so far, and levels that end later.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Presses {
     entered: Vec<OfController>,
@@ -41,6 +42,7 @@ impl Presses {
         self.later.front().map(|(_, input)| input.cycle).filter(|&cycle| cycle <= to)
     }
 
+    /// Whether no level ends later.
     pub(super) fn are_done(&self) -> bool {
         self.later.is_empty()
     }
@@ -56,7 +58,7 @@ impl Presses {
     pub(super) fn script(&self, index: usize, now: Instant) -> Vec<PanelInput> {
         let own =
             self.entered.iter().filter(|(controller, input)| *controller == index && input.cycle <= now);
-        own.map(|(_, input)| written(*input)).collect()
+        own.map(|(_, input)| to_panel_input(*input)).collect()
     }
 
     /// Enters a change in the first future cycle in which its input has none, and returns that cycle. It cancels a
@@ -92,7 +94,7 @@ impl Presses {
     }
 }
 
-fn written(Input { cycle, change }: Input) -> PanelInput {
+fn to_panel_input(Input { cycle, change }: Input) -> PanelInput {
     let blank = PanelInput { cycle: cycle.0, ..PanelInput::default() };
     match change {
         Change::Level(signal, level) => PanelInput { input: Some(signal), level: level.into(), ..blank },
@@ -181,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_script_may_have_is_refused_and_a_line_has_no_buttons() {
+    fn inputs_follow_the_rules_of_scripts_and_a_line_has_no_buttons() {
         let switch = Change::Level(Signal::LimitMin, true);
         let mut driven = session(QUICK);
         let why = driven.enter(0, switch).expect_err("the axis drives it").to_string();
@@ -193,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_scenario_presses_is_left_out() {
+    fn inputs_of_the_scenario_are_ignored() {
         let json = QUICK.replace(
             "\"debounce_cycles\": 0,",
             r#""debounce_cycles": 0, "inputs": [ { "cycle": 50, "input": "start" } ],"#,
@@ -205,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn random_presses_in_random_rounds_are_the_same_run_again() {
+    fn random_presses_are_replayed_exactly() {
         let mut two = Scenario::from_json(QUICK).expect("reads");
         two.bus.channels = 2;
         if let Source::Standalone(controllers) = &mut two.source {
@@ -243,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_its_limit_a_session_goes_on_and_the_recording_ends_before_it() {
+    fn a_session_continues_after_its_recording_is_full() {
         let mut session = session(QUICK);
         let mut press = |count: usize| {
             for index in 0..count {
@@ -262,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_without_end_is_recorded_as_far_as_a_run_may_go() {
+    fn an_endless_program_is_recorded_up_to_the_limit_of_groups() {
         let json = QUICK.replace(
             r#"[ { "move": { "length": 10, "speed_hz": 1000 } } ]"#,
             r#"[ { "set": {} }, { "set": { "level": 0 } }, { "jump": {} } ]"#,

@@ -1,4 +1,4 @@
-//! Sessions recorded and run again; the host's conversation with one, over a wire that somebody cuts and bends.
+//! Sessions that are recorded and replayed, and the host's conversation with one over a faulty line.
 
 use super::*;
 use crate::{
@@ -188,7 +188,7 @@ fn random_sessions_are_replayed_exactly() {
 }
 
 #[test]
-fn beyond_its_limit_a_session_goes_on_and_the_recording_ends_before_it() {
+fn a_session_continues_after_its_recording_is_full() {
     let mut session = session(r#"{ "clock_hz": 1000000, "line": { "baud": 90000 } }"#);
     let chunk = vec![0x81; 1 << 16];
     for _ in 0..64 {
@@ -459,7 +459,7 @@ fn a_reset_device_is_done_only_after_all_steps() {
 }
 
 #[test]
-fn bytes_that_wait_for_the_line_are_in_the_same_cycles_as_if_they_had_been_received_at_once() {
+fn buffered_bytes_have_the_same_cycles_as_bytes_received_immediately() {
     for seed in 0..100 {
         let mut random = Random::new(seed);
         let json = random_scenario(&mut random);
@@ -507,7 +507,7 @@ fn a_flood_is_read_at_the_rate_of_the_line() {
         assert!(session.received() >= 249_999, "{protocol}: {}", session.received());
         assert!(session.records_all());
         // Once there is no more room in the recording, nothing is kept of a send without an end.
-        session.cut_recording();
+        session.end_recording();
         for _ in 0..3 {
             while input.room() > 0 {
                 input.push(&flood);
