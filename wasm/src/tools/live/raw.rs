@@ -107,7 +107,7 @@ impl LiveRawHost {
     pub fn state(&self) -> Result<JsValue, JsError> {
         let report = self.host.report(false);
         object(&State {
-            text: report.standing(),
+            text: report.status(),
             done: report.sent,
             ticks: report.packets,
             lead: self.host.lead(),
