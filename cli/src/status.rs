@@ -73,7 +73,7 @@ pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables 
         })
     });
     let tables = match &summary.stand_alone {
-        Some(StandAloneSummary { digest, work, .. }) => {
+        Some(StandAloneSummary { digest, too_many_groups: work, .. }) => {
             let ended = work.map(|work| work.to_string());
             tables
                 .with("panels", panels)
