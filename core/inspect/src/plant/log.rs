@@ -264,7 +264,7 @@ mod tests {
     use super::*;
     use crate::trace::stored_run::Recording;
     use stepscope_peripheral::units::Instant;
-    use stepscope_sim::Experiment;
+    use stepscope_sim::{Experiment, RunLimits};
 
     #[test]
     fn curves_end_at_the_final_position() {
@@ -273,7 +273,7 @@ mod tests {
         let mut recording = Recording::default();
         let mut log = PlantLog::new(run.plant(0).expect("it has one"));
         while !run.advance_observed(
-            (Instant(run.cycles().0 + 100_000), u64::MAX),
+            RunLimits { cycle: Instant(run.cycles().0 + 100_000), ..RunLimits::default() },
             &mut [&mut recording],
             &mut [&mut log],
         ) {
