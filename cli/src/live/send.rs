@@ -80,32 +80,11 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;
     let experiment = Experiment::new(&for_real_line(scenarios::read(path)?));
     let experiment = experiment.map_err(|problems| Failure::Scenario(path.clone(), problems))?;
-    if experiment.segments().is_some() {
-        let why = "the scenario has segments, so there are no ticks to send; use the engine ticks";
-        return Err(Failure::Option(format!("{}: {why}", path.display())));
-    }
-    let baud = experiment.baud();
-    if arguments.rs485 == Rs485::Rts && baud > MAX_RTS_BAUD {
-        return Err(Failure::Option(format!(
-            "--rs485: rts is too slow for {baud} baud; use at most {MAX_RTS_BAUD} baud, or kernel or auto"
-        )));
-    }
-    let is_raw = experiment.config().protocol() == Protocol::Raw;
-    if arguments.lead > 0 && !is_raw {
-        let why = "is for raw packets only; omit it, because the framed protocol keeps the queue filled";
-        return Err(Failure::Option(format!("--lead: {} {why}", arguments.lead)));
-    }
-    let job = if is_raw {
-        Job::Raw(raw::host(&experiment, arguments.lead)?)
-    } else {
-        Job::Framed(experiment.conversation(Instant(1)).ok_or_else(|| {
-            let why = "replies to a line script are unknown, so nothing can be confirmed; use a motion or packets as the source";
-            Failure::Option(format!("{}: {why}", path.display()))
-        })?)
-    };
+    let job = prepare(arguments, &experiment)?;
     wake_on_time();
     // Until here a signal ends the command at once, even while it waits for a pipe.
     interrupt::watch()?;
+    let baud = experiment.baud();
     let port = open(&arguments.port, baud, arguments.rs485)?;
     let wire = &mut Wire::new(port, arguments.rs485 == Rs485::Rts, arguments.echo);
     let conversation = match job {
@@ -124,17 +103,42 @@ pub(crate) fn send(arguments: &Arguments) -> Result<(), Failure> {
         interrupts: 0,
     };
     let ended = sender.run(wire);
+    // Ends the status line before the report.
     drop(std::mem::replace(&mut sender.line, StatusLine::new(false)));
-    let interrupted = sender.interrupts > 0;
-    let report = Report::new(&experiment, &mut sender.host, interrupted);
+    let is_interrupted = sender.interrupts > 0;
+    let report = Report::new(&experiment, &mut sender.host, is_interrupted);
     print(&report, wire, baud, (arguments.json.json, ended.as_ref().err()))?;
     ended?;
-    if interrupted {
+    if is_interrupted {
         return Err(Failure::Interrupted);
     }
-    match report.doubt() {
-        None => Ok(()),
-        Some(why) => Err(Failure::Check(why)),
+    report.doubt().map_or(Ok(()), |why| Err(Failure::Check(why)))
+}
+
+/// Checks what can be checked before the port is opened.
+fn prepare(arguments: &Arguments, experiment: &Experiment) -> Result<Job, Failure> {
+    let invalid = |why| Err(Failure::invalid(&arguments.scenario, why));
+    if experiment.segments().is_some() {
+        return invalid("the scenario has segments, so there are no ticks to send; use the engine ticks");
+    }
+    let baud = experiment.baud();
+    if arguments.rs485 == Rs485::Rts && baud > MAX_RTS_BAUD {
+        return Err(Failure::Option(format!(
+            "--rs485: rts is too slow for {baud} baud; use at most {MAX_RTS_BAUD} baud, or kernel or auto"
+        )));
+    }
+    if experiment.config().protocol() == Protocol::Raw {
+        return raw::host(experiment, arguments.lead).map(Job::Raw);
+    }
+    if arguments.lead > 0 {
+        let why = "is for raw packets only; omit it, because the framed protocol keeps the queue filled";
+        return Err(Failure::Option(format!("--lead: {} {why}", arguments.lead)));
+    }
+    match experiment.conversation(Instant(1)) {
+        Some(conversation) => Ok(Job::Framed(conversation)),
+        None => invalid(
+            "replies to a line script are unknown, so nothing can be confirmed; use a motion or packets as the source",
+        ),
     }
 }
 
