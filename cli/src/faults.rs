@@ -124,17 +124,7 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
             protocols.iter().map(|&protocol| Ok(sweep(protocol)?.scenario(seed))).collect();
         return write(&path, &scenarios?, arguments.write_scenario.is_some(), out.map(PathBuf::as_path));
     }
-    let seeds = match arguments.seed {
-        Some(seed) => u64::from(seed)..u64::from(seed) + 1,
-        None => u64::from(arguments.from)..u64::from(arguments.from) + u64::from(arguments.seeds),
-    };
-    if seeds.end > SEEDS {
-        let (from, count, most) = (arguments.from, arguments.seeds, SEEDS - seeds.start);
-        return Err(Failure::Option(format!(
-            "--from {from} with --seeds {count}: the last seed is {}; use --seeds 1 to {most}, or a lower --from",
-            SEEDS - 1
-        )));
-    }
+    let seeds = seed_range(arguments)?;
     let mut reports = Vec::new();
     let mut progress = Progress::new("faults", arguments.work.show.progress).with_parts(protocols.len());
     for &protocol in protocols {
@@ -150,7 +140,7 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         print(&reports).map_err(Failure::output)?;
     }
-    // On a raw line wrong steps are expected.
+    // Raw lines are expected to have wrong steps.
     match reports.iter().find(|(name, report)| *name == FRAMED && report.tally.is_wrong()) {
         Some((_, report)) => {
             let count = report.tally.wrong_seeds;
@@ -161,6 +151,19 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
         }
         None => Ok(()),
     }
+}
+
+fn seed_range(arguments: &Arguments) -> Result<Range<u64>, Failure> {
+    let first = u64::from(arguments.seed.unwrap_or(arguments.from));
+    let count = if arguments.seed.is_some() { 1 } else { u64::from(arguments.seeds) };
+    let max = SEEDS - first;
+    if count > max {
+        return Err(Failure::Option(format!(
+            "--from {first} with --seeds {count}: the last seed is {}; use --seeds 1 to {max}, or a lower --from",
+            SEEDS - 1
+        )));
+    }
+    Ok(first..first + count)
 }
 
 fn run(
@@ -189,7 +192,7 @@ fn batch(sweep: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> 
     Ok(report)
 }
 
-/// Writes them to `out`, or prints their links. A file has one scenario.
+/// Writes the scenarios to `out`, or prints their links. A file has one scenario.
 fn write(path: &Path, scenarios: &[Scenario], is_file: bool, out: Option<&Path>) -> Result<(), Failure> {
     if is_file && scenarios.len() > 1 {
         let why = "--protocol: both gives two scenarios, but --write-scenario takes one; use raw or framed";
@@ -204,7 +207,7 @@ fn write(path: &Path, scenarios: &[Scenario], is_file: bool, out: Option<&Path>)
     })
 }
 
-/// Name, whether it applies to raw lines, figure.
+/// Name, whether it applies to raw lines, value.
 type Row = (&'static str, bool, fn(&Tally) -> u64);
 const ROWS: &[Row] = &[
     ("seeds", true, |tally| tally.seeds),
