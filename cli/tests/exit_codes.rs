@@ -248,7 +248,7 @@ fn rejects_the_analysis_of_four_billion_steps() {
         let (code, out, err) = stepscope(arguments, long);
         assert_eq!((code, out.as_str()), (Some(2), ""), "{arguments:?}");
         assert!(
-            err.starts_with("-: 4294967295 steps, and up to 24000000 can be analyzed; "),
+            err.starts_with("-: 4294967295 steps are too many; the maximum is 24000000; "),
             "{arguments:?}: {err}"
         );
     }

@@ -221,7 +221,7 @@ fn explains_why_there_is_no_table() {
         (
             &["--format", "c", "--axis", "1", "--form", "document"],
             MOTION,
-            "axes[1]: a move of this kind has no table",
+            "axes[1]: this kind of move has no table",
         ),
         (&[], r#"{ "source": { "line": {} } }"#, "source: no channel has steps"),
         (&["--error-us=-1"], MOTION, "use 0 to 1000000000"),

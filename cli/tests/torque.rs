@@ -47,7 +47,7 @@ fn warns_of_a_torque_shortage_with_numbers_and_a_remedy() {
     assert_eq!(stepscope(&["torque", "-", "--axis", "2"], &scenario).0, Some(2));
     let direct = axes(r#"{"mechanics":{"direct":{}},"motor":{}}"#);
     let (code, _, err) = stepscope(&["torque", "-"], &direct);
-    assert!(code == Some(2) && err.contains("choose rotary, wheel or screw"), "{err}");
+    assert!(code == Some(2) && err.contains("use rotary, wheel or screw"), "{err}");
 }
 
 #[test]
