@@ -71,9 +71,9 @@ impl Simulation {
             Ok(checks) => checks,
             Err(controllers) => {
                 let error = format!(
-                    "the link has digests of {controllers} controllers, but this experiment has {own}; they are ignored"
+                    "the link has digests of {controllers} controllers, but this experiment has {own}; request a new link"
                 );
-                return RunComparison { same: true, error: Some(error), ..comparison };
+                return RunComparison { error: Some(error), ..comparison };
             }
         };
         for (check, recorded) in checks.iter_mut().zip(&self.recordings) {
