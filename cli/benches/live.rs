@@ -24,10 +24,8 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-use stepscope_core::peripheral::{
-    protocol::Kind,
-    wire::frame::{Ticks, emit},
-};
+use stepscope_core::peripheral::protocol::Kind;
+use stepscope_core::peripheral::wire::frame::{Ticks, emit};
 
 const SECONDS: u32 = 20;
 const BARS_MS: [f64; 9] = [0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];

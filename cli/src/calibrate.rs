@@ -3,10 +3,8 @@
 use crate::{failure::Failure, json::Tables, options::Json, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
-use std::{
-    io::{self, Write},
-    path::PathBuf,
-};
+use std::io::{self, Write};
+use std::path::PathBuf;
 use stepscope_core::inspect::motion::calibration::{Calibration, Fit, Pair};
 
 /// Possible columns of a length, with mm per unit.

@@ -10,34 +10,22 @@ mod comparison;
 mod files;
 mod text;
 
-use crate::{
-    failure::Failure,
-    json::Tables,
-    output::{Outputs, STANDARD},
-    pipe,
-    progress::Progress,
-    scenarios, suggest,
-    timing::{self, TimeUnit},
-    torque::{self, AxisDemand},
-};
+use crate::output::{Outputs, STANDARD};
+use crate::timing::{self, TimeUnit};
+use crate::torque::{self, AxisDemand};
+use crate::{failure::Failure, json::Tables, pipe, progress::Progress, scenarios, suggest};
 pub(crate) use arguments::Arguments;
 use comparison::PlanComparison;
-use std::{
-    io::{self, BufReader, Cursor, Read},
-    path::Path,
+use std::io::{self, BufReader, Cursor, Read};
+use std::path::Path;
+use stepscope_core::capture::ChannelMap;
+use stepscope_core::capture::read::{self, Limits, ReadOptions, Reading};
+use stepscope_core::capture::samples::{SAMPLES, sample};
+use stepscope_core::inspect::{
+    motion::torque::Machine, recording::loaded_capture::LoadedCapture, trace::timing::TimingCheck,
 };
-use stepscope_core::{
-    capture::{
-        ChannelMap,
-        read::{self, Limits, ReadOptions, Reading},
-        samples::{SAMPLES, sample},
-    },
-    inspect::{
-        motion::torque::Machine, recording::loaded_capture::LoadedCapture, trace::timing::TimingCheck,
-    },
-    peripheral::signal::Sink,
-    scenario::{Scenario, SegmentLists, Source, TimingRules},
-};
+use stepscope_core::peripheral::signal::Sink;
+use stepscope_core::scenario::{Scenario, SegmentLists, Source, TimingRules};
 
 /// Maximum bytes of a recording from a pipe, which is kept in memory because it cannot be read twice.
 const MAX_PIPED: u64 = 1 << 30;

@@ -4,11 +4,8 @@
 
 use crate::{failure::Failure, output, paths, scenarios};
 use clap::Command;
-use clap_complete::{
-    CompleteEnv, Shell,
-    engine::{ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter},
-    env::Shells,
-};
+use clap_complete::engine::{ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter};
+use clap_complete::{CompleteEnv, Shell, env::Shells};
 use std::{ffi::OsStr, io::Write, path::Path};
 use stepscope_core::{capture::samples::SAMPLES, inspect::trace::drivers::DRIVERS};
 

@@ -1,15 +1,10 @@
 //! Failures of a command: message and exit code.
 
 use crate::{suggest, terminal::Escaped};
-use std::{
-    fmt, io,
-    path::{Path, PathBuf},
-    process::ExitCode,
-};
-use stepscope_core::{
-    inspect::export::vcd::TooCoarse,
-    scenario::{MAX_TEXT_BYTES, Problem, ValueError, link::LinkError},
-};
+use std::path::{Path, PathBuf};
+use std::{fmt, io, process::ExitCode};
+use stepscope_core::inspect::export::vcd::TooCoarse;
+use stepscope_core::scenario::{MAX_TEXT_BYTES, Problem, ValueError, link::LinkError};
 
 pub(crate) const INTERRUPTED: u8 = 130;
 

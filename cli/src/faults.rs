@@ -1,28 +1,19 @@
 //! `stepscope faults`: runs a scenario with random line faults, one run per seed.
 
+use crate::failure::{Failure, plural};
+use crate::options::{Json, Work};
 use crate::{
-    failure::{Failure, plural},
-    json::Tables,
-    options::{Json, Work},
-    output::STANDARD,
-    parallel,
-    progress::Progress,
-    quantity::whole,
-    scenario_file, scenarios, terminal,
+    json::Tables, output::STANDARD, parallel, progress::Progress, quantity::whole, scenario_file, scenarios,
+    terminal,
 };
 use clap::{Args, ValueEnum};
 use serde_json::json;
-use std::{
-    io::{self, Write},
-    num::NonZero,
-    ops::Range,
-    path::{Path, PathBuf},
-};
-use stepscope_core::{
-    peripheral::config::Protocol,
-    scenario::{Problem, Scenario, link},
-    sim::fault_sweep::{FaultSweep, Tally},
-};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::{num::NonZero, ops::Range};
+use stepscope_core::peripheral::config::Protocol;
+use stepscope_core::scenario::{Problem, Scenario, link};
+use stepscope_core::sim::fault_sweep::{FaultSweep, Tally};
 
 const BATCH: u64 = 64;
 /// Seeds have 32 bits.

@@ -1,10 +1,8 @@
 //! Files that `stepscope run` writes during the run.
 
 use crate::output::Out;
-use std::{
-    io::{self, Write},
-    path::PathBuf,
-};
+use std::io::{self, Write};
+use std::path::PathBuf;
 use stepscope_core::{
     inspect::{
         export::{

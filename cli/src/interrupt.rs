@@ -3,14 +3,10 @@
 //! A command removes its temporary files and ends with exit code 130. A live session counts the signals instead
 //! ([`watch`]): it has to stop motors first.
 
-use crate::{
-    failure::{Failure, INTERRUPTED},
-    output,
-};
-use std::{
-    io,
-    sync::atomic::{AtomicBool, AtomicUsize, Ordering},
-};
+use crate::failure::{Failure, INTERRUPTED};
+use crate::output;
+use std::io;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// This many signals end even a live session at once.
 const FORCED: usize = 3;
@@ -52,10 +48,8 @@ fn handle_signal() {
 #[cfg(unix)]
 mod system {
     use super::{handle_signal, io};
-    use signal_hook::{
-        consts::{SIGHUP, SIGINT, SIGTERM},
-        iterator::{Handle, Signals},
-    };
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::iterator::{Handle, Signals};
     use std::{sync::OnceLock, thread};
 
     const ALL: [i32; 3] = [SIGHUP, SIGINT, SIGTERM];

@@ -1,22 +1,16 @@
 //! `stepscope settling`, `stepscope limits` and `stepscope resonance`: limits of the motors of a scenario's plant.
 
+use crate::failure::{Failure, Numbered, no_plant};
+use crate::options::{Json, Out, Work};
+use crate::quantity::{Acceleration, PeakPart, Rate, whole};
 use crate::{
-    failure::{Failure, Numbered, no_plant},
-    json::Tables,
-    motors::MotorReplacement,
-    options::{Json, Out, Work},
-    output, parallel,
-    progress::Progress,
-    quantity::{Acceleration, PeakPart, Rate, whole},
-    scenario_file, terminal,
+    json::Tables, motors::MotorReplacement, output, parallel, progress::Progress, scenario_file, terminal,
 };
 use clap::Args;
 use serde_json::json;
-use std::{
-    io::{self, Write},
-    num::NonZero,
-    path::{Path, PathBuf},
-};
+use std::io::{self, Write};
+use std::num::NonZero;
+use std::path::{Path, PathBuf};
 use stepscope_core::{
     inspect::plant::outcome::settling as settling_of,
     plant::{

@@ -2,10 +2,8 @@
 
 use crate::{failure::Failure, output::Out, scenario_file};
 use std::{io::Write, path::Path};
-use stepscope_core::{
-    scenario::Scenario,
-    sim::{Experiment, Run, scripted},
-};
+use stepscope_core::scenario::Scenario;
+use stepscope_core::sim::{Experiment, Run, scripted};
 
 /// The scenario gives the same traces without host, noise and motion.
 pub(crate) fn write(

@@ -44,10 +44,8 @@ mod verify;
 
 use crate::failure::Failure;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use std::{
-    io::{self, Write},
-    process::ExitCode,
-};
+use std::io::{self, Write};
+use std::process::ExitCode;
 use stepscope_core::inspect::export::plain_text::is_unsafe;
 
 /// Simulate and check stepper motion with clock-cycle accuracy

@@ -5,22 +5,16 @@ mod distortion;
 mod table;
 mod unplanned;
 
-use crate::{
-    failure::{Failure, Numbered},
-    output, run_recording, scenarios,
-};
+use crate::failure::{Failure, Numbered};
+use crate::{output, run_recording, scenarios};
 pub(crate) use arguments::Arguments;
 use arguments::Written;
 use distortion::Distortion;
 use std::io::{self, Write};
-use stepscope_core::{
-    inspect::motion::{
-        actual_motion::Pulses,
-        measures::{Measures, within_bounds},
-    },
-    peripheral::trace::steps,
-    scenario::{Problem, Scenario, Source},
-};
+use stepscope_core::inspect::motion::actual_motion::Pulses;
+use stepscope_core::inspect::motion::measures::{Measures, within_bounds};
+use stepscope_core::peripheral::trace::steps;
+use stepscope_core::scenario::{Problem, Scenario, Source};
 
 pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scenario;

@@ -1,27 +1,15 @@
 //! Options that select listed motors and drivers: `--motor`, `--motor-driver`, `stepscope plant --motors`.
 
-use crate::{
-    failure::{Failure, no_plant},
-    json::Tables,
-    quantity::whole,
-    scenarios, terminal,
-};
-use clap::{
-    Args,
-    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
-};
+use crate::failure::{Failure, no_plant};
+use crate::{json::Tables, quantity::whole, scenarios, terminal};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde_json::json;
-use std::{
-    borrow::Cow,
-    io::{self, Write},
-    path::Path,
-    rc::Rc,
-};
-use stepscope_core::{
-    inspect::plant::motors::{self, DRIVES, DriveSheet, MOTORS, MotorSheet},
-    scenario::{Compact, Scenario},
-    sim::Experiment,
-};
+use std::io::{self, Write};
+use std::{borrow::Cow, path::Path, rc::Rc};
+use stepscope_core::inspect::plant::motors::{self, DRIVES, DriveSheet, MOTORS, MotorSheet};
+use stepscope_core::scenario::{Compact, Scenario};
+use stepscope_core::sim::Experiment;
 
 #[derive(Args)]
 pub(crate) struct MotorReplacement {

@@ -10,12 +10,10 @@
 //! temporary files are kept. Pipes and devices are written directly.
 
 use crate::{failure::Failure, pipe, progress};
-use std::{
-    fs::{self, File},
-    io::{self, BufWriter, Write},
-    path::{Path, PathBuf},
-    sync::{Mutex, MutexGuard, PoisonError},
-};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::TempPath;
 
 pub(crate) const STANDARD: &str = "-";

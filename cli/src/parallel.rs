@@ -1,16 +1,11 @@
 //! Runs work on all cores and returns results in order, whatever the number of threads.
 
 use crate::{progress::Progress, terminal};
-use rayon::{
-    ThreadPool, ThreadPoolBuilder,
-    iter::{IntoParallelIterator, ParallelIterator},
-};
-use std::{
-    io::{self, Write},
-    num::NonZero,
-    sync::{Mutex, Once, PoisonError},
-    thread::available_parallelism,
-};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::io::{self, Write};
+use std::sync::{Mutex, Once, PoisonError};
+use std::{num::NonZero, thread::available_parallelism};
 
 /// More threads cost memory and gain nothing.
 const MAX_THREADS_PER_CORE: usize = 4;

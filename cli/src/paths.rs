@@ -1,9 +1,7 @@
 //! The file arguments of all commands. Checks before a command starts that no output is an input or another output.
 
-use crate::{
-    failure::Failure,
-    output::{Outputs, STANDARD},
-};
+use crate::failure::Failure;
+use crate::output::{Outputs, STANDARD};
 use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 

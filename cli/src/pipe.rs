@@ -1,13 +1,7 @@
 //! Opens files that may be named pipes, and limits the wait for the other end.
 
-use std::{
-    fs::{File, OpenOptions},
-    io,
-    path::Path,
-    sync::mpsc::sync_channel,
-    thread,
-    time::Duration,
-};
+use std::fs::{File, OpenOptions};
+use std::{io, path::Path, sync::mpsc::sync_channel, thread, time::Duration};
 
 const WAIT: Duration = Duration::from_secs(10);
 

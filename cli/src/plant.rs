@@ -1,26 +1,16 @@
 //! `stepscope plant`: simulates the motors, supply and sensors that a scenario's pulses drive.
 
-use crate::{
-    failure::{Failure, Numbered, no_plant},
-    json::Tables,
-    motors::{self, MotorReplacement},
-    options::{Json, ShowProgress},
-    output::{Out, Outputs, STANDARD},
-    progress::Progress,
-    quantity::whole,
-    terminal,
-};
+use crate::failure::{Failure, Numbered, no_plant};
+use crate::motors::{self, MotorReplacement};
+use crate::options::{Json, ShowProgress};
+use crate::output::{Out, Outputs, STANDARD};
+use crate::{json::Tables, progress::Progress, quantity::whole, terminal};
 use clap::Args;
 use serde::Serialize;
 use serde_json::Value;
-use std::{
-    cell::RefCell,
-    io::{self, Write},
-    num::NonZero,
-    path::{Path, PathBuf},
-    rc::Rc,
-    slice,
-};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::{cell::RefCell, num::NonZero, rc::Rc, slice};
 use stepscope_core::{
     inspect::{
         export::vcd::{Timescale, VcdWriter},

@@ -3,14 +3,10 @@
 use crate::{failure::Failure, options::Out, quantity::Millimeters, scenario_file, scenarios};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use stepscope_core::{
-    motion::{
-        mechanics::{Direct, Mechanics},
-        moves::{Axis, Interpolation, Move, PointUnit, Points},
-        plan_axis,
-    },
-    scenario::{Motion, Scenario, Source, of_motion, points_of_table},
-};
+use stepscope_core::motion::mechanics::{Direct, Mechanics};
+use stepscope_core::motion::moves::{Axis, Interpolation, Move, PointUnit, Points};
+use stepscope_core::motion::plan_axis;
+use stepscope_core::scenario::{Motion, Scenario, Source, of_motion, points_of_table};
 
 #[derive(Args)]
 pub(crate) struct Arguments {

@@ -1,29 +1,16 @@
 //! `stepscope powercut`: cuts a stand-alone controller's power and checks the restored position.
 
-use crate::{
-    failure::{Failure, plural},
-    json::Tables,
-    options::{Json, Work},
-    parallel,
-    progress::Progress,
-    quantity::whole,
-    scenarios, terminal,
-};
+use crate::failure::{Failure, plural};
+use crate::options::{Json, Work};
+use crate::{json::Tables, parallel, progress::Progress, quantity::whole, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
-use std::{
-    io::{self, Write},
-    path::PathBuf,
-};
-use stepscope_core::{
-    controller::{
-        CheckedSetup,
-        parameters::{Parameters, Policy, Setup},
-    },
-    peripheral::units::Instant,
-    scenario::Source,
-    sim::power_cut::{PowerCuts, Tally, Wear, min_hold_up, tally, wear, with_memory},
-};
+use std::io::{self, Write};
+use std::path::PathBuf;
+use stepscope_core::controller::CheckedSetup;
+use stepscope_core::controller::parameters::{Parameters, Policy, Setup};
+use stepscope_core::sim::power_cut::{PowerCuts, Tally, Wear, min_hold_up, tally, wear, with_memory};
+use stepscope_core::{peripheral::units::Instant, scenario::Source};
 
 /// Number of parallel parts; each part runs the scenario from its start.
 const PARTS: usize = 16;

@@ -2,12 +2,9 @@
 
 use crate::terminal::{self, Escaped};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::{
-    fmt,
-    io::{self, IsTerminal, Write},
-    path::PathBuf,
-    time::{Duration, Instant},
-};
+use std::io::{self, IsTerminal, Write};
+use std::time::{Duration, Instant};
+use std::{fmt, path::PathBuf};
 
 /// Work that ends sooner shows no bar.
 const DELAY: Duration = Duration::from_millis(400);

@@ -16,20 +16,14 @@ use crate::{
 };
 use clap::Args;
 use serde_json::json;
-use std::{
-    io::{self, Write},
-    path::PathBuf,
-};
-use stepscope_core::{
-    controller::{CheckedSetup, StandAlone},
-    inspect::{
-        export::vcd::Timescale,
-        trace::{fingerprint::Fingerprinter, timing::TimingCheck},
-    },
-    peripheral::config::Config,
-    scenario::{Cause, Problem, Scenario, Source, link},
-    sim::{Experiment, Run, Summary},
-};
+use std::io::{self, Write};
+use std::path::PathBuf;
+use stepscope_core::controller::{CheckedSetup, StandAlone};
+use stepscope_core::inspect::export::vcd::Timescale;
+use stepscope_core::inspect::trace::{fingerprint::Fingerprinter, timing::TimingCheck};
+use stepscope_core::peripheral::config::Config;
+use stepscope_core::scenario::{Cause, Problem, Scenario, Source, link};
+use stepscope_core::sim::{Experiment, Run, Summary};
 
 /// Records between progress reports.
 const SLICE: u64 = 1 << 16;

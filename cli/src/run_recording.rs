@@ -2,10 +2,8 @@
 
 use crate::failure::Failure;
 use std::path::Path;
-use stepscope_core::{
-    inspect::trace::stored_run::{Recording, record_run},
-    sim::Experiment,
-};
+use stepscope_core::inspect::trace::stored_run::{Recording, record_run};
+use stepscope_core::sim::Experiment;
 
 /// The recording of the scenario's first controller.
 ///

@@ -1,26 +1,18 @@
 //! Reads scenarios; `stepscope open` and `stepscope presets`.
 
-use crate::{
-    failure::Failure,
-    json,
-    options::{Json, Out},
-    output, pipe, scenario_file, suggest, terminal, verify,
-};
+use crate::options::{Json, Out};
+use crate::{failure::Failure, json, output, pipe, scenario_file, suggest, terminal, verify};
 use clap::Args;
 use serde_json::json;
-use std::{
-    io::{self, Read, Write},
-    path::{Path, PathBuf},
-    rc::Rc,
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use stepscope_core::capture::samples::{SAMPLES, sample};
+use stepscope_core::scenario::presets::{
+    CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset,
 };
-use stepscope_core::{
-    capture::samples::{SAMPLES, sample},
-    scenario::{
-        MAX_TEXT_BYTES, Problem, Scenario, ValueError, link,
-        presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset},
-    },
-    sim::Experiment,
-};
+use stepscope_core::scenario::{MAX_TEXT_BYTES, Problem, Scenario, ValueError, link};
+use stepscope_core::sim::Experiment;
 
 /// Checks types only; `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {

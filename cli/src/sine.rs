@@ -1,32 +1,18 @@
 //! `stepscope sine`: segments of sines and their distortion (CSV).
 
-use crate::{
-    failure::{Failure, Numbered},
-    json::Tables,
-    options::{Json, Out},
-    output, parallel,
-    progress::Progress,
-    quantity::{AmplitudePart, Hertz, Seconds, whole},
-    scenarios,
-};
+use crate::failure::{Failure, Numbered};
+use crate::options::{Json, Out};
+use crate::quantity::{AmplitudePart, Hertz, Seconds, whole};
+use crate::{json::Tables, output, parallel, progress::Progress, scenarios};
 use clap::{Args, Subcommand};
 use serde_json::{Value, json};
-use std::{
-    io::{self, Write},
-    path::{Path, PathBuf},
-};
-use stepscope_core::{
-    inspect::motion::{
-        sine_optimum::{Freedom, MAX_SEGMENTS, optimum},
-        sine_polyline::{self, Bounds, Distinct, Measure, Row, swept},
-    },
-    motion::{
-        Profile,
-        curves::{Memory, Segment, SineSegments},
-        moves::Move,
-    },
-    scenario::{Problem, Scenario, Source, ValueError},
-};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use stepscope_core::inspect::motion::sine_optimum::{Freedom, MAX_SEGMENTS, optimum};
+use stepscope_core::inspect::motion::sine_polyline::{self, Bounds, Distinct, Measure, Row, swept};
+use stepscope_core::motion::curves::{Memory, Segment, SineSegments};
+use stepscope_core::motion::{Profile, moves::Move};
+use stepscope_core::scenario::{Problem, Scenario, Source, ValueError};
 
 #[derive(Subcommand)]
 pub(crate) enum Command {

@@ -3,10 +3,8 @@
 use crate::{json::Tables, terminal};
 use serde_json::{Value, json};
 use std::io::{self, Write};
-use stepscope_core::{
-    controller::trust_name,
-    sim::{ControllerSummary, StandAloneSummary, Summary},
-};
+use stepscope_core::controller::trust_name;
+use stepscope_core::sim::{ControllerSummary, StandAloneSummary, Summary};
 
 pub(crate) fn digests(summary: &Summary) -> io::Result<()> {
     let mut out = terminal::out();

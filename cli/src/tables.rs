@@ -1,22 +1,14 @@
 //! `stepscope tables`: step times of a scenario's axes as tables for a firmware.
 
-use crate::{
-    failure::{Failure, Numbered},
-    json::Tables,
-    options::{Json, Out},
-    output,
-    quantity::{Microseconds, whole},
-    run_recording, scenarios,
-    steps::steps_of_table,
-    terminal,
-};
+use crate::failure::{Failure, Numbered};
+use crate::options::{Json, Out};
+use crate::quantity::{Microseconds, whole};
+use crate::{json::Tables, output, run_recording, scenarios, steps::steps_of_table, terminal};
 use clap::{Args, ValueEnum};
 use serde_json::json;
-use std::{
-    io::{self, Write},
-    num::NonZeroU32,
-    path::{Path, PathBuf},
-};
+use std::io::{self, Write};
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
 use stepscope_core::{
     inspect::export::{
         source_code::{Language, Source, headline, is_name},

@@ -1,26 +1,16 @@
 //! The timing check of `stepscope run --timing`, and `stepscope drivers`.
 
-use crate::{
-    failure::{Failure, plural, with_hint},
-    json::Tables,
-    output::Out,
-    scenarios, suggest, terminal,
-};
+use crate::failure::{Failure, plural, with_hint};
+use crate::{json::Tables, output::Out, scenarios, suggest, terminal};
 use clap::Args;
 use serde_json::{Value, json};
-use std::{
-    io::{self, Write},
-    path::{Path, PathBuf},
-};
-use stepscope_core::{
-    capture::timebase::Timebase,
-    inspect::trace::{
-        drivers::{self, DRIVERS, DataSheet},
-        timing::{Rule, RuleResult, TimingCheck},
-    },
-    peripheral::units::{Cycles, Instant},
-    scenario::{Scenario, TimingRules},
-};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use stepscope_core::capture::timebase::Timebase;
+use stepscope_core::inspect::trace::drivers::{self, DRIVERS, DataSheet};
+use stepscope_core::inspect::trace::timing::{Rule, RuleResult, TimingCheck};
+use stepscope_core::peripheral::units::{Cycles, Instant};
+use stepscope_core::scenario::{Scenario, TimingRules};
 
 const MAX_SHOWN: usize = 20;
 const MAX_WRITTEN: usize = 1_000_000;

@@ -6,27 +6,19 @@ pub(crate) mod tables;
 pub(crate) mod text;
 mod unplanned;
 
-use crate::{
-    failure::{Failure, Numbered},
-    output,
-    progress::Progress,
-    scenarios,
-};
+use crate::failure::{Failure, Numbered};
+use crate::{output, progress::Progress, scenarios};
 pub(crate) use arguments::Arguments;
 use arguments::Written;
 pub(crate) use axis_demand::AxisDemand;
 use axis_demand::MotionSource;
 use std::io::{self, Write};
-use stepscope_core::{
-    inspect::{
-        motion::torque::{Demand, Machine},
-        plant::model_agreement::{Agreement, FirstSlips, agreement},
-    },
-    motion::{moves::Axis, plan_lists},
-    peripheral::{trace::Digest, units::Cycles},
-    scenario::{Motion, Problem, Scenario, Source, ValueError, of_motion},
-    sim::{BUDGET_MOTOR_STEPS, Experiment, plant_run::PlantRun},
-};
+use stepscope_core::inspect::motion::torque::{Demand, Machine};
+use stepscope_core::inspect::plant::model_agreement::{Agreement, FirstSlips, agreement};
+use stepscope_core::motion::{moves::Axis, plan_lists};
+use stepscope_core::peripheral::{trace::Digest, units::Cycles};
+use stepscope_core::scenario::{Motion, Problem, Scenario, Source, ValueError, of_motion};
+use stepscope_core::sim::{BUDGET_MOTOR_STEPS, Experiment, plant_run::PlantRun};
 
 /// Cycles between progress reports.
 const SLICE: Cycles = Cycles(1 << 22);

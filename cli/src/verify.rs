@@ -2,15 +2,10 @@
 
 use crate::{failure::Failure, progress::Progress, terminal};
 use std::{io::Write, path::PathBuf};
-use stepscope_core::{
-    inspect::trace::{
-        fingerprint::{Fingerprinter, Shorter},
-        run_fingerprint::{RunFingerprint, VERSION, Verification},
-    },
-    peripheral::units::Instant,
-    scenario::{Scenario, link},
-    sim::Experiment,
-};
+use stepscope_core::inspect::trace::fingerprint::{Fingerprinter, Shorter};
+use stepscope_core::inspect::trace::run_fingerprint::{RunFingerprint, VERSION, Verification};
+use stepscope_core::scenario::{Scenario, link};
+use stepscope_core::{peripheral::units::Instant, sim::Experiment};
 
 /// Records between progress reports.
 const SLICE: u64 = 1 << 16;

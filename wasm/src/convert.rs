@@ -2,10 +2,8 @@
 
 use js_sys::{Float64Array, Object, Reflect};
 use serde::Serialize;
-use stepscope_core::peripheral::{
-    signal::{Levels, Record},
-    units::Instant,
-};
+use stepscope_core::peripheral::signal::{Levels, Record};
+use stepscope_core::peripheral::units::Instant;
 use wasm_bindgen::{JsError, JsValue};
 
 /// A plain object; maps become objects.

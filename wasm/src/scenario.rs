@@ -1,10 +1,7 @@
 //! A scenario that is read, validated and planned once.
 
-use stepscope_core::{
-    peripheral::config::Config,
-    scenario::Problem,
-    sim::{self, Experiment},
-};
+use stepscope_core::sim::{self, Experiment};
+use stepscope_core::{peripheral::config::Config, scenario::Problem};
 use wasm_bindgen::prelude::*;
 
 /// A scenario that is read, validated and planned once, for runs, links and the study.

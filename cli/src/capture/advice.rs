@@ -1,9 +1,7 @@
 //! Advice on a recording, by options of the command.
 
-use stepscope_core::inspect::recording::{
-    remedy::{Note, Remedy},
-    report::LineReport,
-};
+use stepscope_core::inspect::recording::remedy::{Note, Remedy};
+use stepscope_core::inspect::recording::report::LineReport;
 
 pub(super) fn option(remedy: &Remedy) -> String {
     match remedy {

@@ -1,22 +1,14 @@
 //! The arguments of `stepscope capture`.
 
 use super::advice;
-use crate::{
-    failure::Failure,
-    motors::NamedMotor,
-    options::{Json, ShowProgress},
-    quantity::{ExactMicroseconds, Microseconds, parsed, whole},
-    timing,
-};
+use crate::options::{Json, ShowProgress};
+use crate::quantity::{ExactMicroseconds, Microseconds, parsed, whole};
+use crate::{failure::Failure, motors::NamedMotor, timing};
 use clap::{ArgGroup, Args};
 use std::path::{Path, PathBuf};
-use stepscope_core::{
-    capture::{read::Base, uart},
-    inspect::{
-        export::vcd::Timescale,
-        recording::open_options::{OpenError, OpenOptions},
-    },
-};
+use stepscope_core::capture::{read::Base, uart};
+use stepscope_core::inspect::export::vcd::Timescale;
+use stepscope_core::inspect::recording::open_options::{OpenError, OpenOptions};
 
 #[derive(Args)]
 #[command(group(ArgGroup::new("of_channel").args(["against", "steps"]).multiple(true)))]

@@ -3,15 +3,9 @@
 use super::arguments::Arguments;
 use crate::{failure::Failure, run_recording};
 use std::{path::Path, rc::Rc};
-use stepscope_core::{
-    inspect::recording::{
-        events::{self, Events},
-        loaded_capture::LoadedCapture,
-        tolerance::Tolerance,
-    },
-    scenario::Scenario,
-    sim::Experiment,
-};
+use stepscope_core::inspect::recording::events::{self, Events};
+use stepscope_core::inspect::recording::{loaded_capture::LoadedCapture, tolerance::Tolerance};
+use stepscope_core::{scenario::Scenario, sim::Experiment};
 
 /// A recording next to the plan: steps of a channel, or bytes.
 pub(super) struct PlanComparison {

@@ -1,30 +1,16 @@
 //! Writes the files of a recording.
 
 use super::{arguments::Arguments, comparison::PlanComparison};
-use crate::{
-    failure::Failure,
-    output::{Out, Outputs},
-    quantity::Microseconds,
-    scenario_file,
-};
-use std::{
-    io::{self, Write},
-    path::{Path, PathBuf},
-};
-use stepscope_core::{
-    inspect::{
-        export::{
-            tables::{write_edges_head, write_edges_row},
-            vcd::VcdWriter,
-        },
-        recording::{loaded_capture::LoadedCapture, packets::Packets},
-    },
-    peripheral::{
-        signal::Sink,
-        trace::{Step, write_record},
-    },
-    scenario::Scenario,
-};
+use crate::output::{Out, Outputs};
+use crate::{failure::Failure, quantity::Microseconds, scenario_file};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use stepscope_core::inspect::export::tables::{write_edges_head, write_edges_row};
+use stepscope_core::inspect::export::vcd::VcdWriter;
+use stepscope_core::inspect::recording::{loaded_capture::LoadedCapture, packets::Packets};
+use stepscope_core::peripheral::signal::Sink;
+use stepscope_core::peripheral::trace::{Step, write_record};
+use stepscope_core::scenario::Scenario;
 
 pub(super) fn write(
     arguments: &Arguments,

@@ -1,12 +1,8 @@
 //! Prints the report of `stepscope capture`.
 
 use super::{advice, comparison::PlanComparison};
-use crate::{
-    failure::plural,
-    json::Tables,
-    terminal,
-    torque::{self, AxisDemand},
-};
+use crate::torque::{self, AxisDemand};
+use crate::{failure::plural, json::Tables, terminal};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 use stepscope_core::inspect::recording::{loaded_capture::LoadedCapture, report::ChannelReport};

@@ -7,10 +7,8 @@
 //! ```
 
 use std::{fmt, str::FromStr};
-use stepscope_core::{
-    controller::input::{Change, Signal},
-    peripheral::units::Cycles,
-};
+use stepscope_core::controller::input::{Change, Signal};
+use stepscope_core::peripheral::units::Cycles;
 
 pub(crate) const HELP: &str = "\
 press NAME [TIME]     press a button until `release NAME`, or for a time such as 100ms, 2.5s or 200us

@@ -1,12 +1,9 @@
 //! Standard input as the port of a stand-alone controller's buttons.
 
 use super::port::{Port, Received};
-use std::{
-    io::{self, Read},
-    sync::mpsc::{Receiver, RecvTimeoutError, sync_channel},
-    thread,
-    time::Duration,
-};
+use std::io::{self, Read};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::{thread, time::Duration};
 
 /// Buffered chunks; more input waits in the system.
 const CHUNKS: usize = 4;

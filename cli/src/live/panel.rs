@@ -1,20 +1,12 @@
 //! The panel of served stand-alone controllers: converts lines to presses after the model's current cycle (LIVE H1,
 //! H2).
 
-use super::{
-    buttons::{HELP, Line},
-    status_line::StatusLine,
-};
+use super::buttons::{HELP, Line};
+use super::status_line::StatusLine;
 use std::{collections::VecDeque, fmt::Write};
-use stepscope_core::{
-    controller::{
-        Alarm, Press, StandAlone,
-        input::{Change, Signal},
-        trust_name,
-    },
-    peripheral::units::Instant,
-    sim::session::Session,
-};
+use stepscope_core::controller::input::{Change, Signal};
+use stepscope_core::controller::{Alarm, Press, StandAlone, trust_name};
+use stepscope_core::{peripheral::units::Instant, sim::session::Session};
 
 const MAX_LINE: usize = 200;
 const MAX_LINES: usize = 256;

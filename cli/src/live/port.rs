@@ -1,19 +1,15 @@
 //! Ports: a serial port, a pseudo-terminal, a socket. Each reads with a time-out and writes without blocking.
 
-use super::{
-    closed_peer,
-    line_errors::{self, LineErrors},
-};
+use super::closed_peer;
+use super::line_errors::{self, LineErrors};
 use crate::{failure::Failure, interrupt};
 use serial2::{CharSize, FlowControl, Parity, SerialPort, Settings, StopBits};
-use std::{
-    io::{self, ErrorKind, Read, Write},
-    net::{Shutdown, SocketAddr, TcpListener, TcpStream},
-    path::{Path, PathBuf},
-    sync::mpsc::{RecvTimeoutError, sync_channel},
-    thread,
-    time::{Duration, Instant},
-};
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// The system's shortest wait.
 const MIN_WAIT: Duration = Duration::from_millis(1);
@@ -422,12 +418,10 @@ pub(crate) use pty::Pty;
 #[cfg(unix)]
 mod pty {
     use super::*;
-    use rustix::{
-        event::PollFlags,
-        fs::{OFlags, fcntl_setfl},
-        pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
-        termios::{OptionalActions, tcgetattr, tcsetattr},
-    };
+    use rustix::event::PollFlags;
+    use rustix::fs::{OFlags, fcntl_setfl};
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
     use std::{fs, os::fd::OwnedFd, os::unix::ffi::OsStringExt};
 
     /// Maximum bytes that the system holds for a client that has closed.

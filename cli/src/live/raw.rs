@@ -4,10 +4,8 @@ use super::{port::Received, status_line::StatusLine, stop_watch::StopWatch, wire
 use crate::{failure::Failure, interrupt, json::Tables, terminal};
 use serde_json::json;
 use std::{io::Write, thread, time::Duration};
-use stepscope_core::sim::{
-    Experiment,
-    raw_host::{NotPaced, RawHost, RawReport},
-};
+use stepscope_core::sim::Experiment;
+use stepscope_core::sim::raw_host::{NotPaced, RawHost, RawReport};
 
 const WRITE_LIMIT: Duration = Duration::from_secs(2);
 

@@ -1,20 +1,13 @@
 //! Writes a session's recording: a scenario, and its wall-clock times (LIVE H5).
 
 use crate::{failure::Failure, output::Out, terminal, verify};
-use std::{
-    fs::{self, OpenOptions},
-    io::{self, Write},
-    path::{Path, PathBuf},
-};
-use stepscope_core::{
-    inspect::trace::fingerprint::Fingerprinter,
-    scenario::{Scenario, link},
-    sim::{
-        Experiment,
-        session::{NotTheSession, Session, SessionClock},
-        session_times::SessionTimes,
-    },
-};
+use std::fs::{self, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use stepscope_core::inspect::trace::fingerprint::Fingerprinter;
+use stepscope_core::scenario::{Scenario, link};
+use stepscope_core::sim::session::{NotTheSession, Session, SessionClock};
+use stepscope_core::sim::{Experiment, session_times::SessionTimes};
 
 /// The two files of a recording, with their paths.
 pub(crate) struct Files {

@@ -1,42 +1,22 @@
 //! `stepscope send`: sends a scenario's ticks to real controllers (LIVE H3), with the protocol logic of a simulated
 //! host. Reports a tick as done only if the controller has confirmed it.
 
-use super::{
-    port::{Port, Received, Rs485, Serial, Socket},
-    raw,
-    status_line::StatusLine,
-    stop_watch::{StopWatch, wake_on_time},
-    wire::Wire,
-};
-use crate::{
-    failure::Failure,
-    interrupt,
-    json::Tables,
-    options::{Json, ShowProgress},
-    quantity::whole,
-    scenarios, terminal,
-};
+use super::port::{Port, Received, Rs485, Serial, Socket};
+use super::stop_watch::{StopWatch, wake_on_time};
+use super::{raw, status_line::StatusLine, wire::Wire};
+use crate::options::{Json, ShowProgress};
+use crate::{failure::Failure, interrupt, json::Tables, quantity::whole, scenarios, terminal};
 use clap::Args;
 use serde_json::json;
-use std::{
-    io::{self, Write},
-    path::{Path, PathBuf},
-    time::Duration,
-};
-use stepscope_core::{
-    peripheral::{
-        config::Protocol,
-        protocol::Kind,
-        units::{Cycles, Instant},
-        wire::{frame, schedule::line_time},
-    },
-    sim::{
-        Experiment,
-        framed_host::{Conversation, HostStatus, Report, for_real_line},
-        raw_host::RawHost,
-        session::{Pace, SessionClock},
-    },
-};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use stepscope_core::peripheral::units::{Cycles, Instant};
+use stepscope_core::peripheral::wire::{frame, schedule::line_time};
+use stepscope_core::peripheral::{config::Protocol, protocol::Kind};
+use stepscope_core::sim::framed_host::{Conversation, HostStatus, Report, for_real_line};
+use stepscope_core::sim::session::{Pace, SessionClock};
+use stepscope_core::sim::{Experiment, raw_host::RawHost};
 
 /// Above this rate, RTS would drop too late.
 const MAX_RTS_BAUD: u32 = 9600;

@@ -1,26 +1,17 @@
 //! `stepscope serve`: a scenario's controllers behind a port, or stand-alone ones operated by lines on standard input
 //! (LIVE H2).
 
-use super::{
-    keyboard::Keyboard,
-    port::{Listener, Port, Rs485, Serial},
-    recording::{self, Files, times_path},
-    server::{Pacing, Server, Settings},
-};
-use crate::{
-    failure::{Failure, plural},
-    interrupt,
-    output::{self, Outputs},
-    quantity::whole,
-    scenarios,
-    terminal::{self, Escaped},
-};
+use super::keyboard::Keyboard;
+use super::port::{Listener, Port, Rs485, Serial};
+use super::recording::{self, Files, times_path};
+use super::server::{Pacing, Server, Settings};
+use crate::failure::{Failure, plural};
+use crate::output::{self, Outputs};
+use crate::terminal::{self, Escaped};
+use crate::{interrupt, quantity::whole, scenarios};
 use clap::Args;
-use std::{
-    io::Write,
-    net::SocketAddr,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
+use std::{io::Write, net::SocketAddr};
 use stepscope_core::sim::session::{Pace, Session};
 
 #[derive(Args)]

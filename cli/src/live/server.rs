@@ -6,30 +6,18 @@
 //!
 //! For stand-alone controllers the bytes are lines on standard input, and nothing is written.
 
-use super::{
-    panel::{self, Panel},
-    port::{Port, Received},
-    status_line::StatusLine,
-    stop_watch::{StopWatch, wake_on_time},
-};
+use super::panel::{self, Panel};
+use super::port::{Port, Received};
+use super::status_line::StatusLine;
+use super::stop_watch::{StopWatch, wake_on_time};
 use crate::{failure::Failure, interrupt, terminal};
-use std::{
-    collections::VecDeque,
-    io::{self, Write},
-    time::{Duration, SystemTime, UNIX_EPOCH},
-};
-use stepscope_core::{
-    peripheral::{
-        trace::Digest,
-        units::{Cycles, Instant},
-    },
-    sim::{
-        Summary,
-        lateness::Lateness,
-        session::{Input, Pace, Session, SessionClock},
-        session_times::SessionTimes,
-    },
-};
+use std::collections::VecDeque;
+use std::io::{self, Write};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use stepscope_core::peripheral::trace::Digest;
+use stepscope_core::peripheral::units::{Cycles, Instant};
+use stepscope_core::sim::session::{Input, Pace, Session, SessionClock};
+use stepscope_core::sim::{Summary, lateness::Lateness, session_times::SessionTimes};
 
 /// Maximum cycles per round, which limits the records.
 const MAX_ROUND: u64 = 1_000_000;

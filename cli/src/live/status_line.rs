@@ -1,10 +1,8 @@
 //! A status line on standard error, updated at most ten times per second.
 
 use crate::terminal;
-use std::{
-    io::{self, IsTerminal, Write},
-    time::{Duration, Instant},
-};
+use std::io::{self, IsTerminal, Write};
+use std::time::{Duration, Instant};
 
 const MIN_TIME: Duration = Duration::from_millis(100);
 

@@ -1,9 +1,7 @@
 //! The arguments of `stepscope measures`.
 
-use crate::{
-    options::{Json, Out},
-    quantity::whole,
-};
+use crate::options::{Json, Out};
+use crate::quantity::whole;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 

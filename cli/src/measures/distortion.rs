@@ -1,13 +1,8 @@
 //! Distortion of periodic motions, for the table of measures.
 
-use stepscope_core::{
-    inspect::motion::{
-        actual_motion::Pulses,
-        spectrum::{AnalysisWindow, Harmonics, Spectrum},
-    },
-    motion::AxisPlan,
-    scenario::Analysis,
-};
+use stepscope_core::inspect::motion::actual_motion::Pulses;
+use stepscope_core::inspect::motion::spectrum::{AnalysisWindow, Harmonics, Spectrum};
+use stepscope_core::{motion::AxisPlan, scenario::Analysis};
 
 pub(super) struct Distortion {
     pub(super) ideal: Spectrum,

@@ -1,26 +1,15 @@
 //! Measures steps without a plan: of packets, line scripts, segment lists.
 
 use super::arguments::{Arguments, Written};
-use crate::{
-    failure::{Failure, Numbered},
-    json::Tables,
-    output, run_recording,
-};
+use crate::failure::{Failure, Numbered};
+use crate::{json::Tables, output, run_recording};
 use serde_json::{Map, Value};
 use std::io::{self, Write};
-use stepscope_core::{
-    inspect::{
-        motion::{
-            actual_motion::Pulses,
-            spectra::Spectra,
-            spectrum::{Harmonics, Spectrum},
-        },
-        recording::figures::StepFigures,
-    },
-    peripheral::trace::steps,
-    scenario::{Problem, Scenario, ValueError},
-    sim::Experiment,
-};
+use stepscope_core::inspect::motion::spectrum::{Harmonics, Spectrum};
+use stepscope_core::inspect::motion::{actual_motion::Pulses, spectra::Spectra};
+use stepscope_core::inspect::recording::figures::StepFigures;
+use stepscope_core::scenario::{Problem, Scenario, ValueError};
+use stepscope_core::{peripheral::trace::steps, sim::Experiment};
 
 /// Includes the distortion if the steps are periodic.
 pub(super) fn measures(

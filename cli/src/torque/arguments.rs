@@ -1,10 +1,7 @@
 //! The arguments of `stepscope torque`.
 
-use crate::{
-    motors::NamedMotor,
-    options::{Json, Out},
-    quantity::whole,
-};
+use crate::options::{Json, Out};
+use crate::{motors::NamedMotor, quantity::whole};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 

@@ -1,13 +1,8 @@
 //! A motor and its demand for torque.
 
-use stepscope_core::{
-    inspect::{
-        motion::torque::{Demand, Machine},
-        plant::model_agreement::Agreement,
-    },
-    motion::AxisPlan,
-    peripheral::trace::Step,
-};
+use stepscope_core::inspect::motion::torque::{Demand, Machine};
+use stepscope_core::inspect::plant::model_agreement::Agreement;
+use stepscope_core::{motion::AxisPlan, peripheral::trace::Step};
 
 /// An axis, or a channel without a plan, with its motor.
 pub(crate) struct AxisDemand {

@@ -2,13 +2,9 @@
 
 use super::axis_demand::{AxisDemand, MotionSource};
 use std::io::{self, Write};
-use stepscope_core::{
-    inspect::{
-        motion::torque::{Demand, Machine, Moment, Ramps},
-        plant::model_agreement::Agreement,
-    },
-    motion::PlannedMove,
-};
+use stepscope_core::inspect::motion::torque::{Demand, Machine, Moment, Ramps};
+use stepscope_core::inspect::plant::model_agreement::Agreement;
+use stepscope_core::motion::PlannedMove;
 
 const MAX_SHOWN: usize = 20;
 /// Maximum time of a move, in s (docs/scenario.md).

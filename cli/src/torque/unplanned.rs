@@ -1,16 +1,10 @@
 //! Torque of steps without a plan: of packets, line scripts, segment lists.
 
 use super::{arguments::Arguments, axis_demand::AxisDemand};
-use crate::{
-    failure::{Failure, Numbered},
-    run_recording,
-};
-use stepscope_core::{
-    inspect::motion::torque::Machine,
-    peripheral::trace::steps,
-    scenario::{Problem, Scenario, ValueError},
-    sim::Experiment,
-};
+use crate::failure::{Failure, Numbered};
+use crate::run_recording;
+use stepscope_core::scenario::{Problem, Scenario, ValueError};
+use stepscope_core::{inspect::motion::torque::Machine, peripheral::trace::steps, sim::Experiment};
 
 /// The selected channels with steps, with the plant's motors or the named one: at least one.
 pub(super) fn demands(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<AxisDemand>, Failure> {

@@ -16,11 +16,8 @@ mod draft;
 mod motor;
 mod timing;
 
-use crate::{
-    capture::Capture,
-    channel_map::{ChannelMap, Entry, Input},
-    names::Meaning,
-};
+use crate::channel_map::{ChannelMap, Entry, Input};
+use crate::{capture::Capture, names::Meaning};
 use draft::Draft;
 use motor::{Motor, Source};
 use stepscope_peripheral::signal::MAX_CHANNELS;

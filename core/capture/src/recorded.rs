@@ -13,18 +13,13 @@
 //! assert_eq!(signals.records[1].cycle.0, 160);
 //! ```
 
-use crate::{
-    capture::{Capture, Change},
-    changes,
-    channel_map::{BUS_SIGNALS, ChannelMap, Entry},
-    generated_pulses::{GeneratedPulses, Steps},
-    timebase::Timebase,
-};
+use crate::capture::{Capture, Change};
+use crate::channel_map::{BUS_SIGNALS, ChannelMap, Entry};
+use crate::generated_pulses::{GeneratedPulses, Steps};
+use crate::{changes, timebase::Timebase};
 use core::fmt;
-use stepscope_peripheral::{
-    signal::{Levels, Record},
-    units::Instant,
-};
+use stepscope_peripheral::signal::{Levels, Record};
+use stepscope_peripheral::units::Instant;
 
 /// Maximum width of generated pulses, as a frequency: 2.5 µs.
 const MAX_WIDTH_HZ: u64 = 400_000;

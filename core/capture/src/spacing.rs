@@ -1,10 +1,7 @@
 //! Analyzes the edges of STEP: whether the driver may step at both edges, and whether pulses are low.
 
-use crate::{
-    capture::Capture,
-    changes::MAX_INSPECTED,
-    channel_map::{ChannelMap, EdgeHint, Entry, Input},
-};
+use crate::channel_map::{ChannelMap, EdgeHint, Entry, Input};
+use crate::{capture::Capture, changes::MAX_INSPECTED};
 
 /// Intervals that are needed to call edges evenly spaced.
 const MIN_INTERVALS: u64 = 14;

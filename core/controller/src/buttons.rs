@@ -1,12 +1,8 @@
 //! The effect of each button in each state (CONTROLLER G2).
 
-use crate::{
-    controller::{Controller, Edit, NEVER, Paused, Press},
-    input::Signal,
-    motion::Purpose,
-    parameters::Group,
-    state::{Alarm, State, trust},
-};
+use crate::controller::{Controller, Edit, NEVER, Paused, Press};
+use crate::state::{Alarm, State, trust};
+use crate::{input::Signal, motion::Purpose, parameters::Group};
 use stepscope_peripheral::units::Instant;
 
 /// An entry has its last six digits.

@@ -1,24 +1,13 @@
 //! Validation of controllers (CONTROLLER.md, "The format" and "Refused").
 
-use crate::{
-    checked::CheckedSetup,
-    input::{Change, Input, Signal},
-    journal::RECORD,
-    limits,
-    numbers::Numbers,
-    parameters::{
-        Axis, Group, Home, Initial, Move, MoveTo, Parameters, Policy, Profile, Release, Setup, ShortMove,
-        Until,
-    },
-    refusal::{Refusal, Refused, Warned, Warning},
-    table::Table,
+use crate::input::{Change, Input, Signal};
+use crate::parameters::{
+    Axis, Group, Home, Initial, Move, MoveTo, Parameters, Policy, Profile, Release, Setup, ShortMove, Until,
 };
-use alloc::{
-    collections::BTreeSet,
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use crate::refusal::{Refusal, Refused, Warned, Warning};
+use crate::{checked::CheckedSetup, journal::RECORD, limits, numbers::Numbers, table::Table};
+use alloc::string::{String, ToString};
+use alloc::{collections::BTreeSet, format, vec::Vec};
 use core::ops::RangeInclusive;
 use stepscope_peripheral::{segment::FRACTION_BITS, units::Cycles};
 

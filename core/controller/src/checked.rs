@@ -1,9 +1,7 @@
 //! Validated controllers.
 
-use crate::{
-    parameters::{Parameters, Setup},
-    refusal::Warned,
-};
+use crate::parameters::{Parameters, Setup};
+use crate::refusal::Warned;
 use alloc::{rc::Rc, vec::Vec};
 use stepscope_peripheral::segment::PulseTimes;
 

@@ -32,10 +32,8 @@
 //! assert_eq!((runner.machine().state(0), chip.rises), (Some(State::Ready), 10_000));
 //! ```
 
-use crate::{
-    input::{SIGNALS, Signal},
-    panel::{self, Led, Word},
-};
+use crate::input::{SIGNALS, Signal};
+use crate::panel::{self, Led, Word};
 use alloc::string::String;
 use stepscope_peripheral::{signal::Levels, units::Instant};
 

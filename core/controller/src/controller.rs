@@ -7,20 +7,14 @@
 //! Other files extend it: `pulses` (1, 3), `store` (2, 5), `reactions` (4) with `power`, `buttons`, `moves`, `program` and
 //! `homing`.
 
+use crate::debounce::{Inputs, Times};
+use crate::journal::{self, ValidRecord};
+use crate::motion::{ENDLESS, Motion, Purpose, interval};
+use crate::panel::{PanelRecord, Word};
+use crate::state::{Alarm, State};
 use crate::{
-    axis::VirtualAxis,
-    checked::CheckedSetup,
-    debounce::{Inputs, Times},
-    eeprom::Eeprom,
-    input::Signal,
-    journal::{self, ValidRecord},
-    motion::{ENDLESS, Motion, Purpose, interval},
-    numbers::Numbers,
-    panel::{PanelRecord, Word},
-    parameters::Parameters,
-    pins::Pins,
-    script::Script,
-    state::{Alarm, State},
+    axis::VirtualAxis, checked::CheckedSetup, eeprom::Eeprom, input::Signal, numbers::Numbers,
+    parameters::Parameters, pins::Pins, script::Script,
 };
 use alloc::{rc::Rc, vec::Vec};
 use stepscope_peripheral::{segment::PulseTimes, units::Instant};

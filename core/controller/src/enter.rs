@@ -1,13 +1,7 @@
 //! Inputs that are entered during a run, for example by the buttons of a page.
 
-use crate::{
-    check,
-    input::{Change, Input},
-    limits,
-    machine::StandAlone,
-    refusal::Refusal,
-    script,
-};
+use crate::input::{Change, Input};
+use crate::{check, limits, machine::StandAlone, refusal::Refusal, script};
 use core::fmt;
 use stepscope_peripheral::units::Instant;
 

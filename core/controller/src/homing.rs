@@ -7,11 +7,9 @@
 //! fine              └────────────────┘└ return
 //! ```
 
-use crate::{
-    controller::Controller,
-    motion::{Climb, Leg, Motion, Purpose},
-    state::{Alarm, State, trust},
-};
+use crate::controller::Controller;
+use crate::motion::{Climb, Leg, Motion, Purpose};
+use crate::state::{Alarm, State, trust};
 
 impl Controller {
     /// Begins homing; it skips the search if the switch is closed already.

@@ -1,20 +1,14 @@
 //! All stand-alone controllers of a bus (CONTROLLER G1), run cycle by cycle or event by event.
 
+use crate::controller::{Controller, NEVER};
+use crate::script::{self, Script};
 use crate::{
-    checked::CheckedSetup,
-    controller::{Controller, NEVER},
-    input::Signal,
-    limits,
-    panel::PanelRecord,
-    parameters::Parameters,
-    script::{self, Script},
+    checked::CheckedSetup, input::Signal, limits, panel::PanelRecord, parameters::Parameters,
     too_many_groups::TooManyGroups,
 };
 use alloc::{rc::Rc, vec::Vec};
-use stepscope_peripheral::{
-    signal::{Event, Levels, Record, Sink},
-    units::{Cycles, Instant},
-};
+use stepscope_peripheral::signal::{Event, Levels, Record, Sink};
+use stepscope_peripheral::units::{Cycles, Instant};
 
 /// The stand-alone controllers of a bus in a run.
 ///

@@ -7,11 +7,8 @@
 //! next += interval; STEP rises in next >> 16
 //! ```
 
-use crate::{
-    input::Signal,
-    state::State,
-    table::{Row, Table},
-};
+use crate::table::{Row, Table};
+use crate::{input::Signal, state::State};
 use stepscope_peripheral::segment::FRACTION_BITS;
 
 pub(crate) const ENDLESS: u64 = u64::MAX;

@@ -1,15 +1,10 @@
 //! Begin and end of moves (CONTROLLER G4), jogs and the return (G6).
 
-use crate::{
-    controller::{Controller, Paused},
-    input::Signal,
-    motion::{Climb, ENDLESS, Motion, Purpose},
-    numbers::Common,
-    parameters::{Release, ShortMove, SoftLimits},
-    pulses::profile,
-    state::{Alarm, State, trust},
-    table::Table,
-};
+use crate::controller::{Controller, Paused};
+use crate::motion::{Climb, ENDLESS, Motion, Purpose};
+use crate::parameters::{Release, ShortMove, SoftLimits};
+use crate::state::{Alarm, State, trust};
+use crate::{input::Signal, numbers::Common, pulses::profile, table::Table};
 use stepscope_peripheral::segment::FRACTION_BITS;
 
 impl Controller {

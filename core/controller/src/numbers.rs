@@ -5,10 +5,8 @@
 //! | 0 to 7 | pulses_per_unit, decimals, jog.speed_hz, jog.fine_hz, return.speed_hz, return.level, loops, used groups |
 //! | 8 + 5*k to 12 + 5*k | length, speed_hz, direction, level, delay_ms of `move` k (from 0) |
 
-use crate::{
-    limits,
-    parameters::{Group, Move, Parameters},
-};
+use crate::limits;
+use crate::parameters::{Group, Move, Parameters};
 use alloc::vec::Vec;
 use core::ops::RangeInclusive;
 
@@ -46,6 +44,13 @@ fn moves(parameters: &Parameters) -> impl Iterator<Item = &Move> {
         Group::Move(group) => Some(group),
         _ => None,
     })
+}
+
+impl Parameters {
+    /// Number of values that the panel can change: 8, and 5 per `move`.
+    pub fn numbers(&self) -> usize {
+        COMMON + PER_MOVE * moves(self).count()
+    }
 }
 
 fn range(parameters: &Parameters, index: usize) -> RangeInclusive<i128> {

@@ -14,11 +14,8 @@
 
 #![allow(missing_docs, reason = "the names of the other fields have their quantity and unit")]
 
-use crate::{
-    input::{Change, Input, Signal},
-    journal,
-    numbers::{COMMON, PER_MOVE},
-};
+use crate::input::{Change, Input, Signal};
+use crate::journal;
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::{parameters, segment::PulseTimes, units::Cycles};
 
@@ -298,11 +295,6 @@ impl Parameters {
             })
         };
         Signal::ALL.into_iter().filter(|&signal| scripted(signal) || driven(signal)).collect()
-    }
-
-    /// Number of values that the panel can change: 8, and 5 per `move`.
-    pub fn numbers(&self) -> usize {
-        COMMON + PER_MOVE * self.groups.iter().filter(|group| matches!(group, Group::Move(_))).count()
     }
 
     /// Size of the EEPROM in bytes: the journal and two banks of numbers.

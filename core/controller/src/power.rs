@@ -1,11 +1,8 @@
 //! Power, emergency stop and self-test (CONTROLLER G2).
 
-use crate::{
-    controller::{Controller, NEVER},
-    input::Signal,
-    parameters::Policy,
-    state::{Alarm, State, trust},
-};
+use crate::controller::{Controller, NEVER};
+use crate::state::{Alarm, State, trust};
+use crate::{input::Signal, parameters::Policy};
 
 impl Controller {
     /// Handles power before all other inputs; returns whether they are handled in this cycle, too.

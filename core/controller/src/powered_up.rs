@@ -1,12 +1,9 @@
 //! What a [`Runner`](crate::Runner) needs of its machine: power-up on a chip, and EEPROM timing by the chip (CONTROLLER G2,
 //! G7).
 
-use crate::{
-    chip::RawLevels,
-    controller::{Controller, GroupCounter},
-    input::{Change, Input, Signal},
-    machine::StandAlone,
-};
+use crate::controller::{Controller, GroupCounter};
+use crate::input::{Change, Input, Signal};
+use crate::{chip::RawLevels, machine::StandAlone};
 use alloc::vec::Vec;
 use stepscope_peripheral::units::Instant;
 

@@ -1,13 +1,10 @@
 //! Programs (CONTROLLER G5): groups that begin, end, repeat and jump.
 
-use crate::{
-    controller::{Controller, NEVER, Paused, Program},
-    input::Signal,
-    motion::{Climb, Motion, Purpose},
-    numbers::Common,
-    parameters::{Group, Jump, Move, MoveTo, Profile, Set, Wait},
-    state::{Alarm, State},
-};
+use crate::controller::{Controller, NEVER, Paused, Program};
+use crate::motion::{Climb, Motion, Purpose};
+use crate::parameters::{Group, Jump, Move, MoveTo, Profile, Set, Wait};
+use crate::state::{Alarm, State};
+use crate::{input::Signal, numbers::Common};
 use alloc::{rc::Rc, vec};
 
 impl Controller {

@@ -1,11 +1,9 @@
 //! The pulses (CONTROLLER G1.1) and the inputs (G1.3) of a cycle.
 
-use crate::{
-    controller::Controller,
-    input::{Change, Signal},
-    parameters::{Group, Parameters},
-    state::{State, trust},
-};
+use crate::controller::Controller;
+use crate::input::{Change, Signal};
+use crate::parameters::{Group, Parameters};
+use crate::state::{State, trust};
 
 /// The intervals of group `group` if it is a `profile`; empty otherwise.
 pub(crate) fn profile(parameters: &Parameters, group: Option<u32>) -> &[u64] {

@@ -1,9 +1,7 @@
 //! Reactions to the inputs of a cycle, in the order of CONTROLLER G1.4.
 
-use crate::{
-    controller::{Controller, NEVER, Paused},
-    state::{Alarm, State},
-};
+use crate::controller::{Controller, NEVER, Paused};
+use crate::state::{Alarm, State};
 
 impl Controller {
     pub(crate) fn react(&mut self, now: u64) {

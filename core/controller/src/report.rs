@@ -1,12 +1,8 @@
 //! Queries about a machine and its controllers.
 
-use crate::{
-    checked::CheckedSetup,
-    controller::Press,
-    machine::StandAlone,
-    panel::{self, PanelRecord},
-    state::{Alarm, State},
-};
+use crate::panel::{self, PanelRecord};
+use crate::state::{Alarm, State};
+use crate::{checked::CheckedSetup, controller::Press, machine::StandAlone};
 use alloc::vec::Vec;
 use stepscope_peripheral::{signal::MAX_CHANNELS, units::Instant};
 

@@ -14,21 +14,14 @@
 //! A byte of memory is complete when the chip reports it, and not before `byte_write_cycles`. So a slow EEPROM delays the
 //! first step until the opening record is complete.
 
+use crate::chip::{Chip, Face, RawLevels};
 use crate::{
-    checked::CheckedSetup,
-    chip::{Chip, Face, RawLevels},
-    controller::NEVER,
-    input::Signal,
-    machine::StandAlone,
-    panel::Word,
-    state::State,
+    checked::CheckedSetup, controller::NEVER, input::Signal, machine::StandAlone, panel::Word, state::State,
 };
 use alloc::vec::Vec;
 use core::fmt;
-use stepscope_peripheral::{
-    signal::{Event, Record, Sink},
-    units::{Cycles, Instant},
-};
+use stepscope_peripheral::signal::{Event, Record, Sink};
+use stepscope_peripheral::units::{Cycles, Instant};
 
 /// Polls per `byte_write_cycles` while a slow chip is still writing.
 const WRITE_POLLS: u64 = 64;

@@ -1,12 +1,8 @@
 //! Reading and writing memory (CONTROLLER G7).
 
-use crate::{
-    controller::Controller,
-    journal::{self, Entry, ValidRecord},
-    numbers::Numbers,
-    parameters::Policy,
-    state::{State, trust},
-};
+use crate::journal::{self, Entry, ValidRecord};
+use crate::state::{State, trust};
+use crate::{controller::Controller, numbers::Numbers, parameters::Policy};
 
 impl Controller {
     fn slots(&self) -> usize {

@@ -43,17 +43,12 @@ pub mod step_tables;
 mod timing;
 mod validator;
 
-pub use curves::{
-    breakpoints::{Breakpoints, Interval},
-    curve::{Curve, Peaks},
-};
+pub use curves::breakpoints::{Breakpoints, Interval};
+pub use curves::curve::{Curve, Peaks};
 pub use format::grouped;
-pub use planners::{
-    axis::{AxisPlan, PlannedMove},
-    due_by::DueBy,
-    plan::{plan_axis, plan_lists, plan_move},
-    profile::Profile,
-};
+pub use planners::axis::{AxisPlan, PlannedMove};
+pub use planners::plan::{plan_axis, plan_lists, plan_move};
+pub use planners::{due_by::DueBy, profile::Profile};
 pub use problem::{Cause, Problem, ValueError};
 pub use timing::ScheduledStep;
 pub use validator::{MAX_PROBLEMS, Validator};

@@ -13,10 +13,8 @@
 //! assert_eq!((refused.unit, refused.mechanics), ("mm", "rotary"));
 //! ```
 
-use crate::{
-    round_half_up,
-    timing::{Double, Exact},
-};
+use crate::round_half_up;
+use crate::timing::{Double, Exact};
 use core::f64::consts::PI;
 use stepscope_peripheral::parameters;
 

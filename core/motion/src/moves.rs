@@ -14,10 +14,8 @@
 //! assert_eq!((plan.steps(), plan.duration_s()), (1600, 0.65));
 //! ```
 
-use crate::{
-    mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed},
-    motor::Motor,
-};
+use crate::mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed};
+use crate::motor::Motor;
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::parameters;
 

@@ -14,10 +14,8 @@
 //! assert!(problems[0].to_string().contains("use a step period of at least 80"), "{}", problems[0]);
 //! ```
 
-use crate::{
-    segment::PulseTimes,
-    units::{Cycles, Instant},
-};
+use crate::segment::PulseTimes;
+use crate::units::{Cycles, Instant};
 use alloc::vec::Vec;
 use core::{fmt, ops::RangeInclusive};
 

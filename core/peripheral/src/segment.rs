@@ -27,10 +27,8 @@
 //! assert_eq!(refused[0].refusal, Refusal::Interval { step: 97, interval: 60 << 16 });
 //! ```
 
-use crate::{
-    signal::MAX_CHANNELS,
-    units::{Cycles, Instant},
-};
+use crate::signal::MAX_CHANNELS;
+use crate::units::{Cycles, Instant};
 use alloc::vec::Vec;
 
 /// Bits of a cycle's fraction: all times of a segment are in 1/65536 cycle.

@@ -23,10 +23,8 @@
 //! assert_eq!(cuts.count, 1);
 //! ```
 
-use crate::{
-    protocol::{FrameOutcome, Reply},
-    units::Instant,
-};
+use crate::protocol::{FrameOutcome, Reply};
+use crate::units::Instant;
 use alloc::vec::Vec;
 
 pub const MAX_CHANNELS: usize = 16;

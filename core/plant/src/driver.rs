@@ -1,9 +1,7 @@
 //! The driver of one motor: from step counts to target currents, and from those to phase voltages (PLANT F4).
 
-use crate::{
-    parameters::{CurrentControl, CurrentDecay, DriverModel, MotorModel},
-    sincos::{nearest, sincos},
-};
+use crate::parameters::{CurrentControl, CurrentDecay, DriverModel, MotorModel};
+use crate::sincos::{nearest, sincos};
 
 /// What a driver applies to a phase in one (sub-)step.
 #[derive(Clone, Copy)]

@@ -1,11 +1,8 @@
 //! The energy that a motor takes from the bus (PLANT F8). Losses are summed step by step, stored energy follows from the
 //! state, and the remainder shows how exact the steps are.
 
-use crate::{
-    motor_constants::{Coupling, MotorConstants, TURN},
-    sincos::sincos,
-    state::State,
-};
+use crate::motor_constants::{Coupling, MotorConstants, TURN};
+use crate::{sincos::sincos, state::State};
 
 /// Sums since the start in J; [`Self::balance`] multiplies `copper` by R/3.
 #[derive(Clone, Copy, Debug, Default)]

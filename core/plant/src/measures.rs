@@ -15,14 +15,8 @@
 //! assert_eq!((result.bus_v.min, result.bus_v.max), (24.0, 24.0));
 //! ```
 
-use crate::{
-    energy::EnergyBalance,
-    lost_steps::Slip,
-    plant::{Observer, Plant},
-    root::square_root,
-    settling::Deviation,
-    state::State,
-};
+use crate::plant::{Observer, Plant};
+use crate::{energy::EnergyBalance, lost_steps::Slip, root::square_root, settling::Deviation, state::State};
 use alloc::vec::Vec;
 
 /// Maximum number of slips saved with their cycles; all are counted.

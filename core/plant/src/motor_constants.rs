@@ -1,9 +1,7 @@
 //! Constants of a motor's equations in full steps (PLANT F2), and of a step of some cycles (F3).
 
-use crate::{
-    parameters::MotorModel,
-    sincos::{phi, sincos},
-};
+use crate::parameters::MotorModel;
+use crate::sincos::{phi, sincos};
 use core::f64::consts::{SQRT_2, TAU};
 
 const DEGREE: f64 = 0.017_453_292_519_943_295;

@@ -6,16 +6,11 @@
 //! point n + 1        supply current, voltage, sensors, lost steps, digest; then choppers decide
 //! ```
 
+use crate::lost_steps::{LostSteps, Slip};
+use crate::refusal::{Refusal, Refused, validate};
+use crate::sensors::{Encoder, SignalChain};
 use crate::{
-    digest::Digest,
-    energy::EnergyBalance,
-    lost_steps::{LostSteps, Slip},
-    parameters::Setup,
-    refusal::{Refusal, Refused, validate},
-    rotor::Rotor,
-    sensors::{Encoder, SignalChain},
-    state::State,
-    supply::Supply,
+    digest::Digest, energy::EnergyBalance, parameters::Setup, rotor::Rotor, state::State, supply::Supply,
 };
 use alloc::vec::Vec;
 use stepscope_peripheral::signal::{Levels, Record};

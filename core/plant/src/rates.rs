@@ -15,17 +15,11 @@
 //! assert!((found.expect("it starts") - 34_700.0).abs() < 400.0);
 //! ```
 
-use crate::{
-    parameters::Setup,
-    plant::{Observer, Plant},
-    refusal::Refused,
-    root::square_root,
-};
+use crate::plant::{Observer, Plant};
+use crate::{parameters::Setup, refusal::Refused, root::square_root};
 use alloc::vec::Vec;
-use stepscope_peripheral::{
-    signal::{Levels, Record},
-    units::Instant,
-};
+use stepscope_peripheral::signal::{Levels, Record};
+use stepscope_peripheral::units::Instant;
 
 /// Cycle of the first step of a trial.
 const FIRST_STEP: u64 = 1600;

@@ -1,10 +1,8 @@
 //! Validation of a plant's parameters, with the numbers of each error.
 
-use crate::{
-    limits,
-    parameters::{CurrentDecay, MotorModel, SensorChain, Setup},
-    stability::{self, Criterion},
-};
+use crate::limits;
+use crate::parameters::{CurrentDecay, MotorModel, SensorChain, Setup};
+use crate::stability::{self, Criterion};
 use alloc::vec::Vec;
 use core::{fmt, ops::RangeInclusive};
 use stepscope_peripheral::signal::MAX_CHANNELS;

@@ -5,14 +5,9 @@
 //! friction; currents; the other half of x
 //! ```
 
-use crate::{
-    driver::{Driver, PhaseInput},
-    energy::EnergyAccount,
-    motor_constants::{MotorConstants, Span},
-    parameters::MotorModel,
-    sincos::sincos,
-    state::State,
-};
+use crate::driver::{Driver, PhaseInput};
+use crate::motor_constants::{MotorConstants, Span};
+use crate::{energy::EnergyAccount, parameters::MotorModel, sincos::sincos, state::State};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Rotor {

@@ -1,10 +1,8 @@
 //! Sensors: low-pass filters and converters of current and acceleration, and encoders (PLANT F6).
 
-use crate::{
-    motor_constants::TURN,
-    parameters::{self, SensorChain},
-    sincos::{nearest, one_minus_exp},
-};
+use crate::motor_constants::TURN;
+use crate::parameters::{self, SensorChain};
+use crate::sincos::{nearest, one_minus_exp};
 use alloc::vec::Vec;
 
 /// Low-pass filters and a converter behind a sensor.

@@ -8,11 +8,8 @@
 //! assert!((natural.frequency_hz - 282.14).abs() < 0.05);
 //! ```
 
-use crate::{
-    motor_constants::{MotorConstants, TURN},
-    parameters::MotorModel,
-    root::square_root,
-};
+use crate::motor_constants::{MotorConstants, TURN};
+use crate::{parameters::MotorModel, root::square_root};
 
 /// Small oscillations of a rotor around the position that its currents hold.
 #[derive(Clone, Copy, Debug, PartialEq)]

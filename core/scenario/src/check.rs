@@ -6,18 +6,12 @@ use crate::{
     Cause, Controller, Hex, Host, LineScript, Noise, Packets, Problem, Scenario, Source, VERSION, Validator,
     ValueError, limits::END_OF_TIME, schema::ranges::check_ranges,
 };
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
-use stepscope_peripheral::{
-    config::{Bus, Config, ConfigError, ConfigProblem, Field, Protocol, SerialLine},
-    segment::CheckedSegments,
-    signal::MAX_CHANNELS,
-    units::{Cycles, Instant},
-    wire::{ForcedLevel, schedule::line_time},
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
+use stepscope_peripheral::config::{Bus, Config, ConfigError, ConfigProblem, Field, Protocol, SerialLine};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::{ForcedLevel, schedule::line_time};
+use stepscope_peripheral::{segment::CheckedSegments, signal::MAX_CHANNELS};
 
 /// Maximum bytes of a line script, or of all packets.
 const MAX_BYTES: usize = 4 << 20;

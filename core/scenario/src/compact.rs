@@ -1,10 +1,8 @@
 //! Writes scenario types as JSON: canonical (for links), whole, or short.
 
 use crate::schema::{Parts, ToParts};
-use alloc::{
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
 use serde_json::{Map, Value};
 
 /// A value with a canonical JSON: fixed order, defaults omitted. Equal values have equal canonical JSON, and reading

@@ -1,17 +1,11 @@
 //! Builds the plants of a scenario, one per controller (F9).
 
 use crate::{Cause, PlantSettings, Scenario, Source, Validator, ValueError};
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
-use stepscope_motion::{
-    mechanics::{Mechanics, Rotary},
-    motor::{Decay, Drive, Motor, Regulator},
-    moves::Axis,
-    plan_axis,
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
+use stepscope_motion::mechanics::{Mechanics, Rotary};
+use stepscope_motion::motor::{Decay, Drive, Motor, Regulator};
+use stepscope_motion::{moves::Axis, plan_axis};
 use stepscope_peripheral::{config::Config, signal::MAX_CHANNELS, units::Cycles};
 use stepscope_plant::{Plant, Refusal, Refused, limits, parameters};
 

@@ -1,9 +1,7 @@
 //! Reads points of a profile (DESIGN B6) from a scenario or a table.
 
-use crate::{
-    Json, Parts, Read, Reader, ToParts,
-    table::{BadTable, Rows, short},
-};
+use crate::table::{BadTable, Rows, short};
+use crate::{Json, Parts, Read, Reader, ToParts};
 use alloc::{borrow::ToOwned, format, string::String, vec, vec::Vec};
 use stepscope_motion::moves::{MAX_POINTS, Point};
 

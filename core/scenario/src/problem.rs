@@ -1,15 +1,11 @@
 //! Problems of a scenario: path, given value, allowed values, remedy.
 
-use alloc::{
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
 use core::fmt;
 use stepscope_motion::problem as motion;
-use stepscope_peripheral::{
-    config::{ConfigError, ConfigProblem},
-    signal::MAX_CHANNELS,
-};
+use stepscope_peripheral::config::{ConfigError, ConfigProblem};
+use stepscope_peripheral::signal::MAX_CHANNELS;
 
 pub use stepscope_motion::problem::ValueError;
 

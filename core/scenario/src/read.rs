@@ -4,10 +4,8 @@ use crate::{
     Cause, Compact, Json, MAX_TEXT_BYTES, Problem, Read, Scenario, ToParts, VERSION, compact,
     reader::read_into,
 };
-use alloc::{
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
 use stepscope_motion::MAX_PROBLEMS;
 
 /// Maximum bytes of a text with every field written; longer ones omit defaults.

@@ -2,17 +2,11 @@
 //!
 //! Unreadable values keep their defaults. Unlike serde, this does not accept a list for an object.
 
-use crate::{
-    Cause, Json, Problem, Validator,
-    schema::{Field, Group, Limit, Type},
-    upgrade::{self, Rename},
-};
-use alloc::{
-    borrow::ToOwned,
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use crate::schema::{Field, Group, Limit, Type};
+use crate::upgrade::{self, Rename};
+use crate::{Cause, Json, Problem, Validator};
+use alloc::string::{String, ToString};
+use alloc::{borrow::ToOwned, format, vec::Vec};
 use core::{fmt::Display, mem::size_of};
 
 /// Limits memory: a short text can contain very many empty entries.

@@ -3,10 +3,8 @@
 //! Uses the columns `bytes` and `start_cycle` or `start_s`. Skips replies, collisions, and replies of other controllers
 //! in older tables without `meaning`.
 
-use crate::{
-    Hex, LineScript, ScriptedSend,
-    table::{BadTable, Rows, short},
-};
+use crate::table::{BadTable, Rows, short};
+use crate::{Hex, LineScript, ScriptedSend};
 use alloc::{borrow::ToOwned, format, string::String, vec::Vec};
 use stepscope_peripheral::wire::frame::{ACK, Deframed, Deframer};
 

@@ -6,12 +6,8 @@ use crate::{
 };
 use alloc::vec::Vec;
 use stepscope_motion::{self as motion, MAX_PROBLEMS};
-use stepscope_peripheral::{
-    config::Bus,
-    segment::{self, CheckedSegments, PulseTimes, Refusal, Refused, SegmentList},
-    signal::MAX_CHANNELS,
-    units::Instant,
-};
+use stepscope_peripheral::segment::{self, CheckedSegments, PulseTimes, Refusal, Refused, SegmentList};
+use stepscope_peripheral::{config::Bus, signal::MAX_CHANNELS, units::Instant};
 
 /// Maximum segments of all channels together.
 const MAX_SEGMENTS: usize = 1_000_000;

@@ -10,11 +10,9 @@ use crate::{
 };
 use alloc::{format, vec::Vec};
 use serde_json::Value;
-use stepscope_controller::{
-    input::{Change, Input, Signal},
-    limits,
-    parameters::{self, Group, Initial, Parameters, Setup},
-};
+use stepscope_controller::input::{Change, Input, Signal};
+use stepscope_controller::limits;
+use stepscope_controller::parameters::{self, Group, Initial, Parameters, Setup};
 use stepscope_motion::plan_move;
 use stepscope_peripheral::{segment::PulseTimes, signal::MAX_CHANNELS, units::Instant};
 

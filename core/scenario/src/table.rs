@@ -1,11 +1,7 @@
 //! Reads tables of separated values, with line numbers for messages.
 
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec,
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec, vec::Vec};
 use core::fmt;
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 

@@ -1,27 +1,18 @@
 //! The commands of each controller and how the host sends them (DESIGN A9): ticks from motions or packets, scheduled on a
 //! raw line, or a job per controller on a framed line.
 
-use crate::{
-    hosts::framed_host::{FramedHost, Job},
-    line::{bus_load::carries, noise::Noise},
-};
+use crate::hosts::framed_host::{FramedHost, Job};
+use crate::line::{bus_load::carries, noise::Noise};
 use alloc::{format, rc::Rc, string::String, vec, vec::Vec};
-use stepscope_motion::{
-    AxisPlan, plan_lists,
-    step_tables::{AxesPath, exact_segments, ticks},
-};
+use stepscope_motion::step_tables::{AxesPath, exact_segments, ticks};
+use stepscope_motion::{AxisPlan, plan_lists};
+use stepscope_peripheral::config::{Config, Protocol};
+use stepscope_peripheral::segment::{CheckedSegments, PulseTimes};
+use stepscope_peripheral::wire::frame::{ACK_LEN, encode_frame};
+use stepscope_peripheral::wire::packet::{ChannelCommand, MAX_STEPS, Tick};
 use stepscope_peripheral::wire::schedule::line_time;
-use stepscope_peripheral::{
-    config::{Config, Protocol},
-    segment::{CheckedSegments, PulseTimes},
-    signal::MAX_CHANNELS,
-    units::Instant,
-    wire::{
-        ForcedLevel, Schedule,
-        frame::{ACK_LEN, encode_frame},
-        packet::{ChannelCommand, MAX_STEPS, Tick},
-    },
-};
+use stepscope_peripheral::wire::{ForcedLevel, Schedule};
+use stepscope_peripheral::{signal::MAX_CHANNELS, units::Instant};
 use stepscope_scenario::{
     CheckedScenario, Controller, Hex, MAX_CONTROLLERS, Problem, Scenario, Source, ValueError, of_motion,
 };

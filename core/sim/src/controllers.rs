@@ -3,12 +3,10 @@
 use crate::line::bus::Bus;
 use alloc::boxed::Box;
 use stepscope_controller::StandAlone;
+use stepscope_peripheral::device::{Faults, SegmentEngine};
+use stepscope_peripheral::signal::{MAX_CHANNELS, Sink};
 use stepscope_peripheral::units::Cycles;
-use stepscope_peripheral::{
-    device::{Faults, SegmentEngine},
-    signal::{MAX_CHANNELS, Sink},
-    units::Instant,
-};
+use stepscope_peripheral::units::Instant;
 
 #[derive(Clone, Debug)]
 pub(crate) enum Generator {

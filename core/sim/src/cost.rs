@@ -5,17 +5,10 @@
 //! can become several, and a forced level can become a byte.
 
 use crate::controller_plan::{ControllerPlan, job, pulses};
-use stepscope_peripheral::{
-    config::{Config, DirLine, Protocol, PulsePhasing},
-    segment::CheckedSegments,
-    units::Cycles,
-    wire::{
-        BitTimes, Schedule,
-        bit_times::BYTE_BITS,
-        frame::{Kind, NAK_LEN, reply_len},
-        schedule::line_time,
-    },
-};
+use stepscope_peripheral::config::{Config, DirLine, Protocol, PulsePhasing};
+use stepscope_peripheral::wire::frame::{Kind, NAK_LEN, reply_len};
+use stepscope_peripheral::wire::{BitTimes, Schedule, bit_times::BYTE_BITS, schedule::line_time};
+use stepscope_peripheral::{segment::CheckedSegments, units::Cycles};
 use stepscope_scenario::{CheckedScenario, Noise, Source};
 
 /// Maximum edges of a byte on the line, and how many of them fall.

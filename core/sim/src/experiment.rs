@@ -1,26 +1,18 @@
 //! A validated scenario and its runs.
 
+use crate::controller_plan::{self, ControllerPlan};
+use crate::controllers::{Controllers, Generator};
+use crate::hosts::framed_host::{Conversation, FramedHost, Progress};
 use crate::plant::attached::AttachedPlants;
-use crate::{
-    controller_plan::{self, ControllerPlan},
-    controllers::{Controllers, Generator},
-    cost::Cost,
-    hosts::framed_host::{Conversation, FramedHost, Progress},
-    line::bus::Bus,
-    run::Run,
-};
+use crate::{cost::Cost, line::bus::Bus, run::Run};
 use alloc::{boxed::Box, rc::Rc, vec::Vec};
 use core::slice;
 use stepscope_controller::StandAlone;
 use stepscope_motion::AxisPlan;
-use stepscope_peripheral::{
-    config::Config,
-    device::{Device, SegmentEngine},
-    segment::CheckedSegments,
-    signal::{Sink, Unpaused},
-    units::Instant,
-    wire::{Line, Schedule},
-};
+use stepscope_peripheral::device::{Device, SegmentEngine};
+use stepscope_peripheral::signal::{Sink, Unpaused};
+use stepscope_peripheral::wire::{Line, Schedule};
+use stepscope_peripheral::{config::Config, segment::CheckedSegments, units::Instant};
 use stepscope_scenario::{CheckedScenario, END_OF_TIME, Problem, Scenario, ValueError};
 
 /// Maximum bytes that a host may have to send: the most ticks of 16 channels on an addressed raw line.

@@ -40,10 +40,8 @@ mod validated;
 pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::Experiment;
 pub use faults::{fault_sweep, power_cut};
-pub use hosts::{
-    framed_host, raw_host,
-    script::{replayed, scripted},
-};
+pub use hosts::script::{replayed, scripted};
+pub use hosts::{framed_host, raw_host};
 pub use line::noise;
 pub use live::{lateness, live_trace, session, session_times, twin};
 pub use plant::plant_run;

@@ -1,18 +1,14 @@
 //! A run in progress.
 
+use crate::controllers::{Controllers, Generator};
+use crate::hosts::framed_host::FramedHost;
 use crate::plant::attached::{AttachedPlant, AttachedPlants};
-use crate::{
-    controllers::{Controllers, Generator},
-    hosts::framed_host::FramedHost,
-};
 use alloc::{boxed::Box, vec::Vec};
 use core::slice;
-use stepscope_peripheral::{
-    device::{Device, Faults},
-    signal::{Event, MAX_CHANNELS, Record, Sink},
-    units::{Cycles, Instant},
-    wire::{ForcedLevel, Line, Schedule},
-};
+use stepscope_peripheral::device::{Device, Faults};
+use stepscope_peripheral::signal::{Event, MAX_CHANNELS, Record, Sink};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::{ForcedLevel, Line, Schedule};
 use stepscope_plant::{Observer, Plant, measures::PlantResult};
 use stepscope_scenario::END_OF_TIME;
 

@@ -4,10 +4,8 @@ use crate::{BUDGET_RECORDS, Cost};
 use alloc::{format, vec, vec::Vec};
 use core::fmt;
 use stepscope_controller::{Alarm, CheckedSetup, Press, StandAlone, State, TooManyGroups, trust_name};
-use stepscope_peripheral::{
-    signal::{Record, Sink},
-    units::{Cycles, Instant},
-};
+use stepscope_peripheral::signal::{Record, Sink};
+use stepscope_peripheral::units::{Cycles, Instant};
 use stepscope_scenario::{Cause, END_OF_TIME, Problem};
 
 impl Cost {

@@ -16,19 +16,13 @@
 //! panels 0123456789abcdef           digest of their records (CONTROLLER.md G8)
 //! ```
 
-use crate::{
-    Experiment, Run,
-    framed_host::{Counts, Progress},
-};
+use crate::framed_host::{Counts, Progress};
+use crate::{Experiment, Run};
 use alloc::vec::Vec;
 use core::fmt;
-use stepscope_peripheral::{
-    config::{Config, Protocol},
-    device::{Device, Faults},
-    protocol::Status,
-    trace::Digest,
-    units::Cycles,
-};
+use stepscope_peripheral::config::{Config, Protocol};
+use stepscope_peripheral::device::{Device, Faults};
+use stepscope_peripheral::{protocol::Status, trace::Digest, units::Cycles};
 
 /// A run so far.
 #[derive(Clone, Debug, PartialEq)]

@@ -19,16 +19,11 @@
 
 use alloc::vec::Vec;
 use core::ops::ControlFlow;
-use stepscope_controller::{
-    CheckedSetup, Runner,
-    chip::{Chip, Face, RawLevels},
-    input::{Change, Input, Signal},
-    panel::PanelRecord,
-};
-use stepscope_peripheral::{
-    signal::{Levels, Record, Sink},
-    units::Instant,
-};
+use stepscope_controller::chip::{Chip, Face, RawLevels};
+use stepscope_controller::input::{Change, Input, Signal};
+use stepscope_controller::{CheckedSetup, Runner, panel::PanelRecord};
+use stepscope_peripheral::signal::{Levels, Record, Sink};
+use stepscope_peripheral::units::Instant;
 
 /// Bits that stay erased in a byte whose write is cut late (CONTROLLER G7).
 const CUT_LATE: u8 = 0x0f;

@@ -1,19 +1,12 @@
 //! Compares all kinds of motion for the same steps and time (DESIGN B4).
 
-use crate::{
-    convert::{field, numbers, object},
-    scenario::ValidatedScenario,
-};
+use crate::convert::{field, numbers, object};
+use crate::scenario::ValidatedScenario;
 use js_sys::{Array, JSON, Object};
 use serde::Serialize;
-use stepscope_core::{
-    inspect::motion::{
-        comparison::{Request, Row, compare},
-        torque::Moment,
-    },
-    motion::PlannedMove,
-    scenario::to_json,
-};
+use stepscope_core::inspect::motion::comparison::{Request, Row, compare};
+use stepscope_core::inspect::motion::torque::Moment;
+use stepscope_core::{motion::PlannedMove, scenario::to_json};
 use wasm_bindgen::prelude::*;
 
 /// A row without its curves.

@@ -9,10 +9,8 @@ pub use device::LiveDevice;
 pub use host::LiveHost;
 pub use raw::LiveRawHost;
 
-use stepscope_core::{
-    peripheral::config::Protocol,
-    scenario::{Problem, Scenario},
-};
+use stepscope_core::peripheral::config::Protocol;
+use stepscope_core::scenario::{Problem, Scenario};
 use wasm_bindgen::prelude::*;
 
 const SEGMENTS: &str = "segments send nothing; choose ticks as the step generation in the form";

@@ -1,21 +1,12 @@
 //! The measures of an axis.
 
-use crate::{
-    convert::{object, records},
-    scenario::{ValidatedScenario, config, listed},
-};
-use stepscope_core::{
-    inspect::{
-        motion::{
-            actual_motion::Pulses,
-            measures::{Measures, within_bounds},
-        },
-        recording::figures::StepFigures,
-        trace::stored_run::record_run,
-    },
-    peripheral::trace::{steps, steps_in},
-    sim::axes_of,
-};
+use crate::convert::{object, records};
+use crate::scenario::{ValidatedScenario, config, listed};
+use stepscope_core::inspect::motion::actual_motion::Pulses;
+use stepscope_core::inspect::motion::measures::{Measures, within_bounds};
+use stepscope_core::inspect::{recording::figures::StepFigures, trace::stored_run::record_run};
+use stepscope_core::peripheral::trace::{steps, steps_in};
+use stepscope_core::sim::axes_of;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]

@@ -1,9 +1,7 @@
 //! Limits of the motors of a plant, searched in pieces by several workers; and lists of motors and drivers.
 
-use crate::{
-    convert::{field, numbers, object},
-    scenario::{ValidatedScenario, listed},
-};
+use crate::convert::{field, numbers, object};
+use crate::scenario::{ValidatedScenario, listed};
 use js_sys::Object;
 use serde::Serialize;
 use stepscope_core::inspect::trace::stored_run::Recording;

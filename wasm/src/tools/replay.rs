@@ -1,9 +1,7 @@
 //! Sends the packets of a table again.
 
-use stepscope_core::{
-    scenario::{LineScript, Scenario},
-    sim::replayed,
-};
+use stepscope_core::scenario::{LineScript, Scenario};
+use stepscope_core::sim::replayed;
 use wasm_bindgen::prelude::*;
 
 /// A scenario that sends the packets of an exported table to the controllers of `json`.

@@ -1,22 +1,14 @@
 //! Segments of a sine with minimum distortion (DESIGN B5): a sweep, the best d1 of a range, and the best vertices.
 
-use crate::{
-    convert::{field, numbers},
-    scenario::ValidatedScenario,
-};
+use crate::convert::{field, numbers};
+use crate::scenario::ValidatedScenario;
 use js_sys::Object;
 use std::ops::Range;
-use stepscope_core::{
-    inspect::motion::{
-        sine_optimum::{Freedom, optimum},
-        sine_polyline::{Bounds, Distinct, Measure, Row, best_of_each, swept},
-    },
-    motion::{
-        Profile,
-        curves::{Memory, Segment},
-    },
-    sim::SelectedAxis,
-};
+use stepscope_core::inspect::motion::sine_optimum::{Freedom, optimum};
+use stepscope_core::inspect::motion::sine_polyline::{Bounds, Distinct, Measure, Row, best_of_each, swept};
+use stepscope_core::motion::Profile;
+use stepscope_core::motion::curves::{Memory, Segment};
+use stepscope_core::sim::SelectedAxis;
 use wasm_bindgen::prelude::*;
 
 /// Columns of rows.

@@ -1,9 +1,7 @@
 //! Step tables of an axis or a run for firmware ([`StepTables`]).
 
-use crate::{
-    convert::{object, records},
-    scenario::{ValidatedScenario, listed},
-};
+use crate::convert::{object, records};
+use crate::scenario::{ValidatedScenario, listed};
 use stepscope_core::{inspect::export::step_tables::StepTables, peripheral::trace::steps, sim::bus_of};
 use wasm_bindgen::prelude::*;
 

@@ -1,17 +1,11 @@
 //! Available and needed torque of an axis.
 
-use crate::{
-    convert::{field, numbers, object, records},
-    scenario::{ValidatedScenario, listed},
-};
+use crate::convert::{field, numbers, object, records};
+use crate::scenario::{ValidatedScenario, listed};
 use js_sys::Object;
-use stepscope_core::{
-    inspect::{
-        motion::torque::{Machine, TorqueReport},
-        plant::motors,
-    },
-    peripheral::trace::steps,
-};
+use stepscope_core::inspect::motion::torque::{Machine, TorqueReport};
+use stepscope_core::inspect::plant::motors;
+use stepscope_core::peripheral::trace::steps;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]

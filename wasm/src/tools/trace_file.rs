@@ -1,15 +1,11 @@
 //! Compares a run with a saved trace.
 
-use crate::{
-    convert::object,
-    scenario::{ValidatedScenario, config, listed},
-};
+use crate::convert::object;
+use crate::scenario::{ValidatedScenario, config, listed};
 use serde::Serialize;
 use stepscope_core::inspect::trace::stored_run::Recording;
-use stepscope_core::{
-    inspect::trace::{diff::TraceDiff, stored_run::record_run},
-    peripheral::signal,
-};
+use stepscope_core::inspect::trace::{diff::TraceDiff, stored_run::record_run};
+use stepscope_core::peripheral::signal;
 use wasm_bindgen::prelude::*;
 
 /// The comparison.

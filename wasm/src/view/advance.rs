@@ -2,11 +2,9 @@
 
 use crate::convert::object;
 use serde::Serialize;
-use stepscope_core::{
-    inspect::plant::log::PlantLog,
-    peripheral::{signal::Sink, units::Instant},
-    sim::{Experiment, Run, RunLimits},
-};
+use stepscope_core::inspect::plant::log::PlantLog;
+use stepscope_core::peripheral::{signal::Sink, units::Instant};
+use stepscope_core::sim::{Experiment, Run, RunLimits};
 use wasm_bindgen::prelude::*;
 
 /// Maximum records of all controllers, of 16 bytes each.

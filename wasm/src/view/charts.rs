@@ -17,11 +17,9 @@ mod surface;
 mod ticks;
 
 pub(crate) use axis::Axis;
-use plotters::{
-    coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged},
-    prelude::*,
-    style::{FontFamily, FontStyle, RGBColor, TextStyle},
-};
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
+use plotters::prelude::*;
+use plotters::style::{FontFamily, FontStyle, RGBColor, TextStyle};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use stroke::Stroke;

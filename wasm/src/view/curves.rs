@@ -1,22 +1,14 @@
 //! Data of the motion view: curves in columns, readings between cursors, and comparison with another run.
 
-use crate::{
-    convert::{field, numbers, object},
-    scenario::config,
-    view::simulation::Simulation,
-};
+use crate::convert::{field, numbers, object};
+use crate::{scenario::config, view::simulation::Simulation};
 use js_sys::Object;
 use serde::Serialize;
-use stepscope_core::{
-    inspect::motion::{
-        actual_motion::Pulses,
-        cursor_stats::{self, CursorStats},
-        curves::{self, Window},
-        position_error::{self, Scaled},
-    },
-    motion::AxisPlan,
-    peripheral::signal::Levels,
-};
+use stepscope_core::inspect::motion::actual_motion::Pulses;
+use stepscope_core::inspect::motion::cursor_stats::{self, CursorStats};
+use stepscope_core::inspect::motion::curves::{self, Window};
+use stepscope_core::inspect::motion::position_error::{self, Scaled};
+use stepscope_core::{motion::AxisPlan, peripheral::signal::Levels};
 use wasm_bindgen::prelude::*;
 
 /// Position, speed and acceleration (if any) at two cursors and between them.

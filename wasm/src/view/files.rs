@@ -3,21 +3,13 @@
 use crate::{convert::field, scenario::config, view::simulation::Simulation};
 use js_sys::{Object, Uint8Array};
 use std::{fmt, io};
-use stepscope_core::{
-    inspect::{
-        export::{
-            tables::{
-                SEGMENTS_HEAD, write_edges_head, write_edges_row, write_segment_row, write_tick_row,
-                write_ticks_head,
-            },
-            vcd::VcdWriter,
-        },
-        trace::window::TraceWindow,
-    },
-    peripheral::{config::Config, signal::Sink, trace::write_record, units::Instant},
-    scenario::Scenario,
-    sim::scripted,
+use stepscope_core::inspect::export::tables::{
+    SEGMENTS_HEAD, write_edges_head, write_edges_row, write_segment_row, write_tick_row, write_ticks_head,
 };
+use stepscope_core::inspect::export::vcd::VcdWriter;
+use stepscope_core::inspect::trace::window::TraceWindow;
+use stepscope_core::peripheral::{config::Config, signal::Sink, trace::write_record, units::Instant};
+use stepscope_core::{scenario::Scenario, sim::scripted};
 use wasm_bindgen::prelude::*;
 
 /// Rows per piece: about 1 MB.

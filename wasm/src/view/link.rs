@@ -2,14 +2,9 @@
 
 use crate::{convert::object, scenario::ValidatedScenario};
 use serde::Serialize;
-use stepscope_core::{
-    inspect::validation::RunCost,
-    scenario::{
-        Scenario,
-        link::{LinkError, Packed, pack, part, unpack, with_part},
-    },
-    sim::Experiment,
-};
+use stepscope_core::scenario::Scenario;
+use stepscope_core::scenario::link::{LinkError, Packed, pack, part, unpack, with_part};
+use stepscope_core::{inspect::validation::RunCost, sim::Experiment};
 use wasm_bindgen::prelude::*;
 
 #[derive(Serialize)]

@@ -1,19 +1,13 @@
 //! The packet table, the ticks and the line decoder of the selected controller.
 
-use crate::{
-    convert::{field, object},
-    view::simulation::Simulation,
-};
+use crate::convert::{field, object};
+use crate::view::simulation::Simulation;
 use js_sys::{Object, Uint8Array};
 use serde::Serialize;
 use std::mem::take;
-use stepscope_core::{
-    inspect::packets::{
-        line_decoder::LineDecoder,
-        packet_table::{Filter, PacketTable, Request, Row},
-    },
-    peripheral::units::Instant,
-};
+use stepscope_core::inspect::packets::line_decoder::LineDecoder;
+use stepscope_core::inspect::packets::packet_table::{Filter, PacketTable, Request, Row};
+use stepscope_core::peripheral::units::Instant;
 use wasm_bindgen::prelude::*;
 
 #[derive(Serialize)]

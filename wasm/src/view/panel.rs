@@ -2,13 +2,9 @@
 
 use crate::{convert::numbers, view::simulation::Simulation};
 use js_sys::Object;
-use stepscope_core::{
-    controller::panel::PanelRecord,
-    peripheral::{
-        signal::{Event, Record, Sink},
-        units::Instant,
-    },
-};
+use stepscope_core::controller::panel::PanelRecord;
+use stepscope_core::peripheral::signal::{Event, Record, Sink};
+use stepscope_core::peripheral::units::Instant;
 use wasm_bindgen::prelude::*;
 
 /// Discards all records.

@@ -1,9 +1,7 @@
 //! History of the panels of stand-alone controllers during a run.
 
-use stepscope_core::{
-    controller::StandAlone,
-    peripheral::{signal::Event, units::Instant},
-};
+use stepscope_core::controller::StandAlone;
+use stepscope_core::peripheral::{signal::Event, units::Instant};
 
 /// Maximum saved states.
 const STOPS: usize = 64;

@@ -1,14 +1,10 @@
 //! Motors, supply and sensors of a run.
 
-use crate::{
-    convert::{field, numbers, object},
-    view::simulation::Simulation,
-};
+use crate::convert::{field, numbers, object};
+use crate::view::simulation::Simulation;
 use js_sys::Object;
-use stepscope_core::inspect::plant::{
-    log::{CycleWindow, MOTOR, PlantLog, SUPPLY},
-    report::PlantReport,
-};
+use stepscope_core::inspect::plant::log::{CycleWindow, MOTOR, PlantLog, SUPPLY};
+use stepscope_core::inspect::plant::report::PlantReport;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]

@@ -1,9 +1,7 @@
 //! Signals of a run for the logic view.
 
-use crate::{
-    convert::{field, object},
-    view::simulation::Simulation,
-};
+use crate::convert::{field, object};
+use crate::view::simulation::Simulation;
 use js_sys::Object;
 use stepscope_core::inspect::trace::{changes::Edge, edges::Signals};
 use wasm_bindgen::prelude::*;

@@ -1,13 +1,9 @@
 //! A run in the worker. The views show one controller at a time.
 
-use crate::{
-    convert::records,
-    scenario::{ValidatedScenario, listed},
-    view::{
-        advance::{advance, progress},
-        panel_log::PanelLog,
-    },
-};
+use crate::convert::records;
+use crate::scenario::{ValidatedScenario, listed};
+use crate::view::advance::{advance, progress};
+use crate::view::panel_log::PanelLog;
 use std::{mem::take, rc::Rc};
 use stepscope_core::{
     inspect::{

@@ -1,15 +1,11 @@
 //! Spectra.
 
-use crate::{
-    convert::{field, numbers, object},
-    view::simulation::Simulation,
-};
+use crate::convert::{field, numbers, object};
+use crate::view::simulation::Simulation;
 use js_sys::Object;
 use serde::Serialize;
-use stepscope_core::inspect::motion::{
-    spectra::Spectra,
-    spectrum::{Harmonics, Spectrum},
-};
+use stepscope_core::inspect::motion::spectra::Spectra;
+use stepscope_core::inspect::motion::spectrum::{Harmonics, Spectrum};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]

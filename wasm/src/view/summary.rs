@@ -1,9 +1,7 @@
 //! The summary of a run.
 
-use crate::{
-    convert::object,
-    view::simulation::{ControllerRecording, Simulation},
-};
+use crate::convert::object;
+use crate::view::simulation::{ControllerRecording, Simulation};
 use serde::Serialize;
 use stepscope_core::{
     inspect::trace::{edges, timing::TimingCheck},

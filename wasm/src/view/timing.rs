@@ -2,14 +2,10 @@
 
 use crate::{convert::object, scenario::config, view::simulation::Simulation};
 use serde::Serialize;
-use stepscope_core::{
-    inspect::trace::{
-        drivers::{self, DRIVERS},
-        timing::{RuleResult, Violation},
-    },
-    peripheral::units::Instant,
-    scenario::{DriverTiming, TimingRules},
-};
+use stepscope_core::inspect::trace::drivers::{self, DRIVERS};
+use stepscope_core::inspect::trace::timing::{RuleResult, Violation};
+use stepscope_core::peripheral::units::Instant;
+use stepscope_core::scenario::{DriverTiming, TimingRules};
 use wasm_bindgen::prelude::*;
 
 #[derive(Serialize)]

@@ -2,10 +2,8 @@
 
 use crate::{convert::object, view::simulation::Simulation};
 use serde::Serialize;
-use stepscope_core::inspect::trace::{
-    fingerprint::{Fingerprint, Mark, Shorter},
-    run_fingerprint::{RunFingerprint, VERSION, Verification},
-};
+use stepscope_core::inspect::trace::fingerprint::{Fingerprint, Mark, Shorter};
+use stepscope_core::inspect::trace::run_fingerprint::{RunFingerprint, VERSION, Verification};
 use stepscope_core::peripheral::signal::Sink;
 use wasm_bindgen::prelude::*;
 

@@ -1,9 +1,7 @@
 //! Measures each channel: number of edges, pulse widths, and whether it is a serial line.
 
-use crate::{
-    capture::Change,
-    uart::{self, Edge, IdleLevel},
-};
+use crate::capture::Change;
+use crate::uart::{self, Edge, IdleLevel};
 
 /// Edges that are inspected to detect a serial line.
 const LINE_EDGES: usize = 600;

@@ -1,16 +1,9 @@
 //! Finds encoders, serial lines and STEP among channels whose names are unknown.
 
-use super::{
-    behavior::MIN_STEPS,
-    draft::Draft,
-    motor::{Motor, Source},
-    timing::has_steps_between,
-};
-use crate::{
-    channel_map::Entry,
-    names::{Kind, Meaning},
-    uart::IdleLevel,
-};
+use super::motor::{Motor, Source};
+use super::{behavior::MIN_STEPS, draft::Draft, timing::has_steps_between};
+use crate::names::{Kind, Meaning};
+use crate::{channel_map::Entry, uart::IdleLevel};
 use stepscope_peripheral::signal::Levels;
 
 const MIN_ENCODER_EDGES: usize = 16;

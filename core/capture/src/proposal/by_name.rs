@@ -1,14 +1,9 @@
 //! Pairs STEP and DIR by their names.
 
-use super::{
-    draft::Draft,
-    motor::{Motor, Source, stem},
-};
-use crate::{
-    channel_map::Entry,
-    names::{AXES, Kind, SignalName, includes_axis},
-    uart::IdleLevel,
-};
+use super::draft::Draft;
+use super::motor::{Motor, Source, stem};
+use crate::names::{AXES, Kind, SignalName, includes_axis};
+use crate::{channel_map::Entry, uart::IdleLevel};
 use stepscope_peripheral::signal::Levels;
 
 const EN: u32 = Levels::EN.trailing_zeros();

@@ -1,10 +1,7 @@
 //! Assigns DIR channels to motors by their levels.
 
-use super::{
-    behavior::MIN_STEPS,
-    draft::Draft,
-    timing::{has_steps_between, is_next_to, nearness},
-};
+use super::timing::{has_steps_between, is_next_to, nearness};
+use super::{behavior::MIN_STEPS, draft::Draft};
 use crate::names::shared_words;
 use std::collections::BTreeSet;
 

@@ -1,15 +1,10 @@
 //! A map in progress, with the names and measurements of its channels.
 
-use super::{
-    behavior::{Behavior, behaviors},
-    motor::Motor,
-};
-use crate::{
-    capture::{Capture, Change},
-    changes::MAX_INSPECTED,
-    channel_map::Entry,
-    names::{Kind, Meaning, SignalName, are_indexed},
-};
+use super::behavior::{Behavior, behaviors};
+use super::motor::Motor;
+use crate::capture::{Capture, Change};
+use crate::names::{Kind, Meaning, SignalName, are_indexed};
+use crate::{changes::MAX_INSPECTED, channel_map::Entry};
 
 pub(super) struct Draft<'a> {
     pub(super) capture: &'a Capture,

@@ -7,12 +7,9 @@
 //! Samples are ticks; the file does not give their rate. A byte begins at its start bit if that has an annotation,
 //! otherwise at its first data bit. The option `format` is not in the file: all values together determine the base.
 
-use super::{
-    base::{Base, Digits, Guess},
-    decimal::whole,
-    reading::Reader,
-    recorder::{Names, Recorder, quoted},
-};
+use super::base::{Base, Digits, Guess};
+use super::recorder::{Names, Recorder, quoted};
+use super::{decimal::whole, reading::Reader};
 use crate::capture::{Capture, MAX_CHANNELS, TimedByte};
 use std::collections::BTreeMap;
 

@@ -1,23 +1,14 @@
 //! Detects the format of a file from its first bytes: by signatures, then by a table's column names, then by trying to
 //! read the first lines.
 
+use super::fields::{Fields, fields, separator};
+use super::levels::{Layout, column_names, is_comment};
 use super::{
-    annotations,
-    base::Base,
-    decimal::Decimal,
-    dump,
-    fields::{Fields, fields, separator},
-    hex, hex_table, klipper,
-    levels::{Layout, column_names, is_comment},
-    log_line, nearest, positions,
-    recorder::quoted,
-    saleae, sigrok, stepscope,
-    times::TimeUnit,
+    annotations, base::Base, decimal::Decimal, dump, hex, hex_table, klipper, log_line, nearest, positions,
+    recorder::quoted, saleae, sigrok, stepscope, times::TimeUnit,
 };
-use crate::{
-    capture::Format,
-    names::{Kind, Meaning},
-};
+use crate::capture::Format;
+use crate::names::{Kind, Meaning};
 
 pub(super) const UNKNOWN: &str = "unknown format; use a value change dump (.vcd), a session or a table of sigrok (.sr, .csv), \
     another table of levels, positions or bytes (.csv), a hex dump, a serial log, or step commands of Klipper";

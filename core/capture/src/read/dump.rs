@@ -7,11 +7,9 @@
 //!
 //! Offsets are checked: each row begins where the one before has ended, and `*` repeats the row before.
 
-use super::{
-    reading::Reader,
-    recorder::{Recorder, grouped, quoted},
-    row::{self, RowFormat},
-};
+use super::reading::Reader;
+use super::recorder::{Recorder, grouped, quoted};
+use super::row::{self, RowFormat};
 use crate::capture::{Capture, TimedByte};
 
 const BASES: [u64; 3] = [16, 8, 10];

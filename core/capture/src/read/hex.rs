@@ -10,15 +10,13 @@
 //!
 //! Bytes of one timed line have the same tick. Without times a byte's tick is its index. RX and TX are channels.
 
-use super::{
-    base::Base,
-    hex_table::{self, Table},
-    log_line::{BYTES, ByteCount, LinePrefix, Time, direction, trailing_direction, without_comment, word},
-    reading::Reader,
-    recorder::{Recorder, quoted},
-    row,
-    times::{TimeUnit, Times},
+use super::hex_table::{self, Table};
+use super::log_line::{
+    BYTES, ByteCount, LinePrefix, Time, direction, trailing_direction, without_comment, word,
 };
+use super::recorder::{Recorder, quoted};
+use super::times::{TimeUnit, Times};
+use super::{base::Base, reading::Reader, row};
 use crate::capture::{Capture, MAX_CHANNELS, TimedByte};
 
 pub(super) struct HexText {

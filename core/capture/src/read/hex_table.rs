@@ -1,12 +1,7 @@
 //! Reads tables of times and bytes: `t_us,bytes`, `time_us,dir,data`, or rows `12.5,55 AA` without a head.
 
-use super::{
-    base::{Base, Digits, Guess},
-    decimal::Decimal,
-    fields::separator,
-    positions, row,
-    times::TimeUnit,
-};
+use super::base::{Base, Digits, Guess};
+use super::{decimal::Decimal, fields::separator, positions, row, times::TimeUnit};
 use crate::names::Meaning;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,11 +9,8 @@
 //! A line may have several commands after any other text. Commands are stored until the file ends, because those of one
 //! stepper come before earlier ones of another; then their steps become levels in order of time.
 
-use super::{
-    decimal::whole,
-    reading::Reader,
-    recorder::{Names, Recorder, grouped, quoted},
-};
+use super::recorder::{Names, Recorder, grouped, quoted};
+use super::{decimal::whole, reading::Reader};
 use crate::{capture::Capture, timebase::Timebase};
 
 const MAX_STEPPERS: usize = 16;

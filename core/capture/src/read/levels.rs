@@ -7,14 +7,11 @@
 //! 0.000012500,1,1                     0.000995,0,1                  24,0.0000015,1,0,1,1,1,0
 //! ```
 
-use super::{
-    fields::{Fields, fields, not_a_level, separator},
-    reading::Reader,
-    recorder::{Names, Recorder, quoted},
-    sample_rate::{SampleRate, period},
-    selection::select,
-    times::{TimeUnit, Times},
-};
+use super::fields::{Fields, fields, not_a_level, separator};
+use super::recorder::{Names, Recorder, quoted};
+use super::sample_rate::{SampleRate, period};
+use super::times::{TimeUnit, Times};
+use super::{reading::Reader, selection::select};
 use crate::capture::Capture;
 
 pub(super) struct LevelsTable {

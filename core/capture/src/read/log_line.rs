@@ -1,13 +1,7 @@
 //! Reads the beginning of a log's line: time, direction or port, and byte count.
 
-use super::{
-    clock::Stamp,
-    decimal::{Decimal, whole},
-    hex_table::Table,
-    recorder::quoted,
-    row,
-    times::TimeUnit,
-};
+use super::decimal::{Decimal, whole};
+use super::{clock::Stamp, hex_table::Table, recorder::quoted, row, times::TimeUnit};
 
 pub(super) const BYTES: &str = "bytes";
 const MAX_PORT: usize = 60;

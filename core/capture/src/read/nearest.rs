@@ -1,14 +1,7 @@
 //! Names the nearest formats of an unknown file, and what each one needs.
 
-use super::{
-    clock::Stamp,
-    decimal::Decimal,
-    fields::{fields, separator},
-    hex,
-    levels::Layout,
-    recorder::quoted,
-    row,
-};
+use super::fields::{fields, separator};
+use super::{clock::Stamp, decimal::Decimal, hex, levels::Layout, recorder::quoted, row};
 
 const MAX_NAMED: usize = 3;
 

@@ -5,14 +5,11 @@
 //! 0.00125,-3             1.25;-3                           0.001 1
 //! ```
 
-use super::{
-    decimal::Decimal,
-    fields::{Fields, separator},
-    levels::{Layout, column_names, is_comment},
-    reading::Reader,
-    recorder::{Names, Recorder, quoted},
-    times::{TimeUnit, Times},
-};
+use super::fields::{Fields, separator};
+use super::levels::{Layout, column_names, is_comment};
+use super::recorder::{Names, Recorder, quoted};
+use super::times::{TimeUnit, Times};
+use super::{decimal::Decimal, reading::Reader};
 use crate::capture::{Capture, TimedPosition};
 
 const STEP_UNITS: [&str; 7] = ["steps", "step", "microsteps", "microstep", "usteps", "pulses", "counts"];

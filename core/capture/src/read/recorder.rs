@@ -3,10 +3,8 @@
 use super::base::Base;
 use core::mem;
 
-use crate::{
-    capture::{Capture, Change, Channel, Format, MAX_CHANNELS, TimedByte, TimedPosition},
-    names::{Kind, Meaning},
-};
+use crate::capture::{Capture, Change, Channel, Format, MAX_CHANNELS, TimedByte, TimedPosition};
+use crate::names::{Kind, Meaning};
 
 const MAX_NOTES: usize = 20;
 const MAX_NAME: usize = 400;

@@ -7,12 +7,10 @@
 //!
 //! Each analyzer is a channel. [`super::levels`] reads the table of levels.
 
-use super::{
-    fields::{Fields, separator},
-    reading::Reader,
-    recorder::{Names, Recorder, quoted},
-    times::{TimeUnit, Times},
-};
+use super::fields::{Fields, separator};
+use super::reading::Reader;
+use super::recorder::{Names, Recorder, quoted};
+use super::times::{TimeUnit, Times};
 use crate::capture::{Capture, TimedByte};
 
 const UNNAMED: &str = "serial";

@@ -4,10 +4,8 @@
 //! ; Samplerate: 24 MHz        # Sample rate: 1e+06Hz        samplerate=1.000000007 GHz
 //! ```
 
-use super::{
-    decimal::{Decimal, power_of_ten},
-    recorder::quoted,
-};
+use super::decimal::{Decimal, power_of_ten};
+use super::recorder::quoted;
 use crate::timebase::Timebase;
 
 /// Reads `24 MHz`, `1.000000007 GHz` or `1000000`, in Hz.

@@ -12,11 +12,9 @@
 mod metadata;
 mod samples;
 
-use super::{
-    reading::{ReadError, Reading},
-    recorder::{Names, Recorder, grouped, quoted},
-    source::Source,
-};
+use super::reading::{ReadError, Reading};
+use super::recorder::{Names, Recorder, grouped, quoted};
+use super::source::Source;
 use flate2::read::DeflateDecoder;
 use metadata::Metadata;
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder};

@@ -14,13 +14,9 @@
 
 mod head;
 
-use super::{
-    decimal::whole,
-    fields::{Fields, not_a_level},
-    reading::Reader,
-    recorder::{Names, Recorder, quoted},
-    selection::select,
-};
+use super::fields::{Fields, not_a_level};
+use super::recorder::{Names, Recorder, quoted};
+use super::{decimal::whole, reading::Reader, selection::select};
 use crate::capture::Capture;
 pub(super) use head::is_comment;
 use head::{Head, RowClock};

@@ -7,10 +7,8 @@
 //!
 //! [`super::levels`] reads the table of edges.
 
-use super::{
-    reading::Reader,
-    recorder::{Recorder, quoted},
-};
+use super::reading::Reader;
+use super::recorder::{Recorder, quoted};
 use crate::capture::Capture;
 use stepscope_peripheral::signal;
 

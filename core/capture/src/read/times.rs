@@ -8,11 +8,9 @@
 //! Ticks have 64 bits. Times with more places than fit, such as 5.000000000000013e-06, are rounded to the nearest tick,
 //! and a note reports it.
 
-use super::{
-    clock::{Dated, Stamp},
-    decimal::{Decimal, power_of_ten},
-    recorder::{Recorder, quoted},
-};
+use super::clock::{Dated, Stamp};
+use super::decimal::{Decimal, power_of_ten};
+use super::recorder::{Recorder, quoted};
 use crate::timebase::Timebase;
 use core::{cmp::Ordering, ops::Range};
 

@@ -13,11 +13,8 @@
 mod header;
 mod variables;
 
-use super::{
-    decimal::whole,
-    reading::Reader,
-    recorder::{Names, Recorder, grouped, quoted},
-};
+use super::recorder::{Names, Recorder, grouped, quoted};
+use super::{decimal::whole, reading::Reader};
 use crate::capture::Capture;
 use header::{Header, Keyword};
 use variables::{Value, Variables};

@@ -1,10 +1,8 @@
 //! Times at which the formula of a motion changes (DESIGN Part B). Between them position, speed and acceleration are smooth
 //! and monotonic: the extremes are at the ends, and three-point Gauss quadrature integrates them and their squares.
 
-use crate::{
-    AxisPlan,
-    curves::curve::{greater, lesser},
-};
+use crate::AxisPlan;
+use crate::curves::curve::{greater, lesser};
 use alloc::vec::Vec;
 
 /// A part of a motion without breakpoints inside.

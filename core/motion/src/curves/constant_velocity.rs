@@ -1,10 +1,7 @@
 //! Constant rate and dwell (DESIGN B6).
 
-use crate::{
-    Curve, Peaks,
-    curves::curve::signed,
-    timing::{CycleTime, Double, Exact, IsDueBefore, Runs, Schedule, one_run},
-};
+use crate::timing::{CycleTime, Double, Exact, IsDueBefore, Runs, Schedule, one_run};
+use crate::{Curve, Peaks, curves::curve::signed};
 use alloc::{boxed::Box, string::String};
 
 /// A move at a constant speed.

@@ -10,18 +10,12 @@
 //!
 //! n steps, T the duration and t_s the time of each ramp, 0 <= t_s <= T/2. By symmetry s(T) is exactly n.
 
-use crate::{
-    Peaks,
-    curves::{
-        mirrored::{Mirrored, MirroredCurve, RAMP_PARTS, parts_s},
-        ramp::longest_ramp_s,
-    },
-    format::ramp_up_to,
-    timing::{
-        CycleTime, Double, Exact, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before,
-        one_searched_run,
-    },
+use crate::curves::mirrored::{Mirrored, MirroredCurve, RAMP_PARTS, parts_s};
+use crate::curves::ramp::longest_ramp_s;
+use crate::timing::{
+    CycleTime, Double, Exact, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before, one_searched_run,
 };
+use crate::{Peaks, format::ramp_up_to};
 use alloc::{boxed::Box, string::String, vec::Vec};
 use core::f64::consts::PI;
 

@@ -20,15 +20,11 @@
 //!
 //! The time of a step is a root of the polynomial of its phase, from the end where it is small, so no digits cancel.
 
-use crate::{
-    Peaks,
-    curves::mirrored::{Mirrored, MirroredCurve},
-    format::grouped,
-    square_root,
-    timing::{
-        CycleTime, Double, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before, one_searched_run,
-    },
+use crate::curves::mirrored::{Mirrored, MirroredCurve};
+use crate::timing::{
+    CycleTime, Double, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before, one_searched_run,
 };
+use crate::{Peaks, format::grouped, square_root};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 /// Maximum steps of Newton's method; six are enough.

@@ -7,10 +7,8 @@
 //!     +-----------      so the end is exactly n
 //! ```
 
-use crate::{
-    Curve, Peaks,
-    curves::curve::{greater, lesser, signed},
-};
+use crate::curves::curve::{greater, lesser, signed};
+use crate::{Curve, Peaks};
 use alloc::{string::String, vec::Vec};
 
 /// Number of intervals of a cosine ramp; even, so that the maximum acceleration in the middle is at a breakpoint.

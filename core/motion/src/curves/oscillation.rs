@@ -6,10 +6,8 @@
 //! -2*A |    \/        \/       4*A steps per period, 0 at the end of each
 //! ```
 
-use crate::{
-    curves::curve::greater,
-    timing::{CycleTime, Double, Exact},
-};
+use crate::curves::curve::greater;
+use crate::timing::{CycleTime, Double, Exact};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Oscillation {

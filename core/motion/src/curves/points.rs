@@ -13,17 +13,10 @@
 mod max_error;
 mod passed;
 
-use crate::{
-    Curve, Peaks,
-    curves::{
-        cubic::{Crossing, Cubic, slope_between},
-        curve::greater,
-    },
-    format::grouped,
-    moves::Interpolation,
-    round_half_up,
-    timing::{CycleTime, Double, Exact, Interpolated, IsDueBefore, MAX_ERROR, Run, Runs, Schedule},
-};
+use crate::curves::cubic::{Crossing, Cubic, slope_between};
+use crate::curves::curve::greater;
+use crate::timing::{CycleTime, Double, Exact, Interpolated, IsDueBefore, MAX_ERROR, Run, Runs, Schedule};
+use crate::{Curve, Peaks, format::grouped, moves::Interpolation, round_half_up};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 use max_error::{MaxError, max_errors};
 

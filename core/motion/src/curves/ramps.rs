@@ -10,16 +10,12 @@
 //!         t_s           T-t_s  T      = n - s(T - t)               from T/2 on
 //! ```
 
-use crate::{
-    Peaks,
-    curves::{
-        mirrored::{Mirrored, MirroredCurve, RAMP_PARTS, parts_s},
-        ramp::{Ramp, longest_ramp_s},
-    },
-    format::{grouped, ramp_up_to},
-    timing::{
-        CycleTime, Double, Exact, IsDueBefore, Runs, Schedule, is_mirrored_due_before, one_searched_run,
-    },
+use crate::Peaks;
+use crate::curves::mirrored::{Mirrored, MirroredCurve, RAMP_PARTS, parts_s};
+use crate::curves::ramp::{Ramp, longest_ramp_s};
+use crate::format::{grouped, ramp_up_to};
+use crate::timing::{
+    CycleTime, Double, Exact, IsDueBefore, Runs, Schedule, is_mirrored_due_before, one_searched_run,
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 

@@ -11,12 +11,10 @@
 //!
 //! The arcsine is only used up to 45 degrees, so that no digits cancel.
 
-use crate::{
-    Curve, Peaks,
-    curves::oscillation::Oscillation,
-    square_root,
-    timing::{CycleTime, Double, IsDueBefore, Number, Run, Runs, Schedule, Times, is_mirrored_due_before},
+use crate::timing::{
+    CycleTime, Double, IsDueBefore, Number, Run, Runs, Schedule, Times, is_mirrored_due_before,
 };
+use crate::{Curve, Peaks, curves::oscillation::Oscillation, square_root};
 use alloc::{boxed::Box, format, rc::Rc, string::String, vec::Vec};
 use core::f64::consts::{PI, TAU};
 

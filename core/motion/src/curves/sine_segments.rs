@@ -10,16 +10,10 @@
 //!      0     512 1024 1536 2048 i
 //! ```
 
-use crate::{
-    Curve, Peaks,
-    curves::{
-        oscillation::Oscillation,
-        polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold},
-    },
-    format::grouped,
-    round_half_up,
-    timing::{CycleTime, Double, IsDueBefore, Run, Runs, Schedule},
-};
+use crate::curves::oscillation::Oscillation;
+use crate::curves::polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold};
+use crate::timing::{CycleTime, Double, IsDueBefore, Run, Runs, Schedule};
+use crate::{Curve, Peaks, format::grouped, round_half_up};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 const MAX_LISTED: usize = 12;

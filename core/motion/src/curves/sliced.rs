@@ -13,12 +13,10 @@
 
 mod compensation;
 
-use crate::{
-    Curve, Peaks,
-    curves::{cosine::Cosine, curve::signed},
-    format::{grouped, ramp_up_to},
-    timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule},
-};
+use crate::curves::{cosine::Cosine, curve::signed};
+use crate::format::{grouped, ramp_up_to};
+use crate::timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule};
+use crate::{Curve, Peaks};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 use compensation::{CompensatedSlices, ROUNDING_TOLERANCE, UncompensatedSlices, slices_in};
 

@@ -10,19 +10,12 @@
 //!      +---------------------    up and down, and the other steps at the next rate
 //! ```
 
-use crate::{
-    Curve, Peaks,
-    bisection::first_in,
-    curves::{
-        curve::{greater, signed},
-        mirrored::Mirrored,
-        staircase_table::StaircaseTable,
-        stepped::{self, ExactTime},
-    },
-    format::{count, grouped},
-    moves::ShortMove,
-    timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule},
-};
+use crate::curves::curve::{greater, signed};
+use crate::curves::stepped::{self, ExactTime};
+use crate::curves::{mirrored::Mirrored, staircase_table::StaircaseTable};
+use crate::format::{count, grouped};
+use crate::timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule};
+use crate::{Curve, Peaks, bisection::first_in, moves::ShortMove};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 /// A move by a staircase of rates.

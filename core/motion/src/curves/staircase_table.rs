@@ -9,11 +9,8 @@
 //! The paper lists S_n with the next rate f_(n+1), up to the first rate above f_max. Every row has a closed form, so none
 //! is stored.
 
-use crate::{
-    bisection::first_from_zero,
-    curves::climb::{Climb, quick_rate},
-    timing::Exact,
-};
+use crate::curves::climb::{Climb, quick_rate};
+use crate::{bisection::first_from_zero, timing::Exact};
 
 const FIRST_STEPS: u64 = 30;
 const EQUAL_ROWS: u64 = 5;

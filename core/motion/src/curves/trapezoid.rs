@@ -12,13 +12,11 @@
 //!       t_r        T-t_r  T
 //! ```
 
-use crate::{
-    Curve, Peaks,
-    curves::mirrored::{Mirrored, MirroredCurve},
-    timing::{
-        CycleTime, Double, IsDueBefore, MoveSteps, Number, Runs, Schedule, is_mirrored_due_before, one_run,
-    },
+use crate::curves::mirrored::{Mirrored, MirroredCurve};
+use crate::timing::{
+    CycleTime, Double, IsDueBefore, MoveSteps, Number, Runs, Schedule, is_mirrored_due_before, one_run,
 };
+use crate::{Curve, Peaks};
 use alloc::{boxed::Box, vec::Vec};
 
 /// A trapezoid with exact step times.

@@ -13,17 +13,11 @@
 //! The paper does not define the steps needed to stop. Here the last interval is row 0 like the first; the two middle
 //! intervals of a triangle with an even count share the highest row.
 
-use crate::{
-    Curve, Peaks,
-    bisection::first_near,
-    curves::{
-        acceleration_table::AccelerationTable,
-        curve::{greater, signed},
-        stepped::{self, ExactTime},
-    },
-    format::grouped,
-    timing::{CycleTime, Double, IsDueBefore, Run, Runs, Schedule},
-};
+use crate::curves::acceleration_table::AccelerationTable;
+use crate::curves::curve::{greater, signed};
+use crate::curves::stepped::{self, ExactTime};
+use crate::timing::{CycleTime, Double, IsDueBefore, Run, Runs, Schedule};
+use crate::{Curve, Peaks, bisection::first_near, format::grouped};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
 /// A trapezoid by an acceleration table.

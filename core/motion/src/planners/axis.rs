@@ -7,10 +7,8 @@
 //!            dwell cosine  constant
 //! ```
 
-use crate::{
-    Peaks, Profile, round_half_up,
-    timing::{CycleTime, MoveSteps, ScheduledStep},
-};
+use crate::timing::{CycleTime, MoveSteps, ScheduledStep};
+use crate::{Peaks, Profile, round_half_up};
 use alloc::vec::Vec;
 
 /// A move and where it begins.

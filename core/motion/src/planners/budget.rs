@@ -1,10 +1,7 @@
 //! Limits of memory, work and speed that all axes of a scenario share.
 
-use crate::{
-    MAX_SPEED,
-    planners::quantities::Quantities,
-    problem::{Cause, ValueError},
-};
+use crate::problem::{Cause, ValueError};
+use crate::{MAX_SPEED, planners::quantities::Quantities};
 
 pub(crate) const MAX_TABLE_ROWS: u64 = 1_000_000;
 pub(crate) const MAX_SEGMENTS: u64 = 65_536;

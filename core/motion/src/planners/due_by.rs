@@ -6,14 +6,12 @@
 //!           +-----E---      left not yet. So ticks and segments of a motion always agree.
 //! ```
 
-use crate::{
-    AxisPlan, Curve, PlannedMove, Profile,
-    curves::{
-        oscillation::Oscillation, sine::Sine, sine_segments::SineSegments, stepped::PAST_THE_STEP,
-        trapezoid_table::TrapezoidTable,
-    },
-    timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, tie},
+use crate::curves::{
+    oscillation::Oscillation, sine::Sine, sine_segments::SineSegments, stepped::PAST_THE_STEP,
+    trapezoid_table::TrapezoidTable,
 };
+use crate::timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, tie};
+use crate::{AxisPlan, Curve, PlannedMove, Profile};
 
 /// Counts the steps of an axis that are due by one cycle after another.
 ///

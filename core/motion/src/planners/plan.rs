@@ -5,13 +5,11 @@
 
 mod motor;
 
+use crate::moves::{Axis, Move};
+use crate::problem::{Problem, ValueError};
 use crate::{
-    AxisPlan, Profile, limits,
-    mechanics::Mechanics,
-    moves::{Axis, Move},
-    planners::budget::Budget,
+    AxisPlan, Profile, limits, mechanics::Mechanics, planners::budget::Budget,
     planners::quantities::Quantities,
-    problem::{Problem, ValueError},
 };
 use alloc::{format, string::String, vec::Vec};
 use stepscope_peripheral::signal::MAX_CHANNELS;

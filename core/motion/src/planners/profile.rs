@@ -10,27 +10,15 @@ mod staircase;
 mod timed;
 mod trapezoid;
 
-use crate::{
-    curves::{
-        constant_velocity::{Constant, Dwell},
-        cosine::Cosine,
-        curve::Curve,
-        jerk_limited::JerkLimited,
-        oscillation::Oscillation,
-        points::Points,
-        ramps::Ramps,
-        sine::Sine,
-        sine_segments::SineSegments,
-        sliced::Sliced,
-        staircase::Staircase,
-        trapezoid::Trapezoid,
-        trapezoid_table::TrapezoidTable,
-    },
-    moves::{CosineMethod, Move, TrapezoidMethod},
-    planners::budget::Budget,
-    planners::quantities::Quantities,
-    timing::{CycleTime, MoveSteps, Schedule},
+use crate::curves::constant_velocity::{Constant, Dwell};
+use crate::curves::{
+    cosine::Cosine, curve::Curve, jerk_limited::JerkLimited, oscillation::Oscillation, points::Points,
+    ramps::Ramps, sine::Sine, sine_segments::SineSegments, sliced::Sliced, staircase::Staircase,
+    trapezoid::Trapezoid, trapezoid_table::TrapezoidTable,
 };
+use crate::moves::{CosineMethod, Move, TrapezoidMethod};
+use crate::timing::{CycleTime, MoveSteps, Schedule};
+use crate::{planners::budget::Budget, planners::quantities::Quantities};
 use core::ops::Deref;
 
 /// The curve of a planned move, by its kind and method.

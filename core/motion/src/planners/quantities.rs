@@ -1,12 +1,7 @@
 //! Converts the numbers of a scenario to steps, and checks that each is in its range and in a unit of the axis (DESIGN B1).
 
-use crate::{
-    limits,
-    mechanics::{Acceleration, Distance, Jerk, Mechanics, NoSuchUnit, Speed},
-    problem::Cause,
-    timing::Double,
-    validator::Validator,
-};
+use crate::mechanics::{Acceleration, Distance, Jerk, Mechanics, NoSuchUnit, Speed};
+use crate::{limits, problem::Cause, timing::Double, validator::Validator};
 use core::ops::RangeInclusive;
 
 type Range = RangeInclusive<f64>;

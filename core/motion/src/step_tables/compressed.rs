@@ -13,23 +13,15 @@
 //! search, each entry is the longest whose last step is near the middle of its window ([`super::longest`]). The longest entry
 //! of all would end at the edge of a window, a bad start for the next entry: such lists have about an eighth more entries.
 
-use super::{
-    entry_format::EntryFormat,
-    fewest::{self, FoundEntry, Section},
-    longest::{LookAhead, Window},
-    segments::START,
-    timing_error::TimingError,
-};
-use crate::{
-    ScheduledStep,
-    problem::{Cause, ValueError},
-};
+use super::fewest::{self, FoundEntry, Section};
+use super::longest::{LookAhead, Window};
+use super::{entry_format::EntryFormat, segments::START, timing_error::TimingError};
+use crate::ScheduledStep;
+use crate::problem::{Cause, ValueError};
 use alloc::{collections::VecDeque, vec::Vec};
 use core::num::NonZeroU32;
-use stepscope_peripheral::{
-    segment::{LAST_CYCLE, PulseTimes, Segment, SegmentList},
-    units::Cycles,
-};
+use stepscope_peripheral::segment::{LAST_CYCLE, PulseTimes, Segment, SegmentList};
+use stepscope_peripheral::units::Cycles;
 
 /// Maximum tolerance of a compressed list.
 pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);

@@ -3,13 +3,12 @@
 //! An interval is rounded once, to the unit of the format. This error accumulates over the steps of a rate, as in a
 //! controller that counts such intervals.
 
-use crate::{
-    AxisPlan, Curve, Profile,
-    curves::{sine_segments::SineSegments, staircase_table::StaircaseTable, trapezoid_table::TrapezoidTable},
-    problem::{Cause, ValueError},
-    round_half_up,
-    step_tables::{compressed::check_entries, entry_format::EntryFormat, segments::START},
+use crate::curves::{
+    sine_segments::SineSegments, staircase_table::StaircaseTable, trapezoid_table::TrapezoidTable,
 };
+use crate::problem::{Cause, ValueError};
+use crate::step_tables::{compressed::check_entries, entry_format::EntryFormat, segments::START};
+use crate::{AxisPlan, Curve, Profile, round_half_up};
 use alloc::{boxed::Box, vec::Vec};
 use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 

@@ -6,10 +6,8 @@
 //! only with proof and accepted only after a replay, and few lengths are replayed.
 
 use crate::problem::Cause;
-use crate::step_tables::{
-    entry_format::EntryFormat,
-    feasible_window::{self, Fit, Gate, Goal},
-};
+use crate::step_tables::entry_format::EntryFormat;
+use crate::step_tables::feasible_window::{self, Fit, Gate, Goal};
 use alloc::vec::Vec;
 
 /// Maximum number of steps read ahead: 24 bytes each.

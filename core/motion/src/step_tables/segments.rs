@@ -9,10 +9,8 @@
 //! segment, from which the engine reproduces exactly these cycles.
 
 use super::AxesPath;
-use crate::{
-    AxisPlan, ScheduledStep,
-    problem::{Cause, Problem, ValueError},
-};
+use crate::problem::{Cause, Problem, ValueError};
+use crate::{AxisPlan, ScheduledStep};
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::{
     segment::{CheckedSegments, FRACTION_BITS, LAST_CYCLE, PulseTimes, Segment, SegmentList},

@@ -6,23 +6,16 @@
 //! compressed   the fewest entries with a given tolerance
 //! ```
 
-use crate::step_tables::{
-    compressed::{Compressed, Tolerance, compressed, compressed_quickly},
-    document::{document, document_bytes},
-    entry_format::{Entry, EntryFormat},
-    segments::{MAX_STEPS, exact},
-    timing_error::TimingError,
-    wire_bytes::wire_bytes,
-};
-use crate::{
-    AxisPlan, ScheduledStep,
-    problem::{Cause, ValueError},
-};
+use crate::problem::{Cause, ValueError};
+use crate::step_tables::compressed::{Compressed, Tolerance, compressed, compressed_quickly};
+use crate::step_tables::document::{document, document_bytes};
+use crate::step_tables::entry_format::{Entry, EntryFormat};
+use crate::step_tables::segments::{MAX_STEPS, exact};
+use crate::step_tables::{timing_error::TimingError, wire_bytes::wire_bytes};
+use crate::{AxisPlan, ScheduledStep};
 use alloc::{vec, vec::Vec};
-use stepscope_peripheral::{
-    segment::{CheckedSegments, PulseTimes, Refusal, SegmentList},
-    units::Cycles,
-};
+use stepscope_peripheral::segment::{CheckedSegments, PulseTimes, Refusal, SegmentList};
+use stepscope_peripheral::units::Cycles;
 
 /// Maximum steps of one axis' compressed list or document table.
 pub const MAX_TABLE_STEPS: u64 = 100_000_000;

@@ -9,10 +9,8 @@
 //! and the end is exact. The end of a tick is an integer cycle, for which the number of steps due is exact (`due_by`).
 
 use super::AxesPath;
-use crate::{
-    AxisPlan,
-    problem::{Cause, Problem, ValueError},
-};
+use crate::AxisPlan;
+use crate::problem::{Cause, Problem, ValueError};
 use alloc::{vec, vec::Vec};
 
 const MAX_TICKS: u64 = 2_000_000;

@@ -13,10 +13,8 @@
 //! long. A block ends where the curve's formula changes. Near a point of rest, where the time is a root of the distance and
 //! blocks would be short, each step is solved.
 
-use crate::{
-    curves::curve::greater,
-    timing::run::{Run, Runs, Schedule, Times, fill_times},
-};
+use crate::curves::curve::greater;
+use crate::timing::run::{Run, Runs, Schedule, Times, fill_times};
 use alloc::{boxed::Box, vec::Vec};
 use core::f64::consts::PI;
 

@@ -17,11 +17,8 @@
 //! 106 bits have an error, too. E counts as earlier by a [`tie`], 2^10 times this error, so that a step due exactly at E is in
 //! the next cycle. So is a step due less than a tie before E: one step in 2^62 of a motion of 2^32 cycles.
 
-use crate::{
-    bisection::first_near,
-    timing::cycle_time::{CycleTime, tie},
-    timing::double::Double,
-};
+use crate::timing::cycle_time::{CycleTime, tie};
+use crate::{bisection::first_near, timing::double::Double};
 
 /// Maximum error of a time in f64, relative to the duration of its move: 64 roundings.
 pub(crate) const MAX_ERROR: f64 = 64.0 * ROUNDING;

@@ -10,11 +10,8 @@
 //! A curve computes the times of its steps in f64 with their maximum error, and decides in 106 bits whether a step is due
 //! before an edge ([`Schedule`]). Shared code rounds the times (`step_loop`) and decides near ties (`rounding`).
 
-use crate::{
-    Curve,
-    timing::cycle_time::CycleTime,
-    timing::rounding::{IsDueBefore, MAX_ERROR},
-};
+use crate::timing::rounding::{IsDueBefore, MAX_ERROR};
+use crate::{Curve, timing::cycle_time::CycleTime};
 use alloc::boxed::Box;
 
 pub(crate) trait Schedule: Curve {

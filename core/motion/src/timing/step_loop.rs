@@ -7,11 +7,9 @@
 //! The times of a move count from its start. Their sum with the start is rounded only once. If an f64 does not decide the
 //! rounding, `rounding` does.
 
-use crate::{
-    timing::cycle_time::CycleTime,
-    timing::rounding::{IsDueBefore, decide_cycle},
-    timing::run::{Run, Runs, Schedule},
-};
+use crate::timing::cycle_time::CycleTime;
+use crate::timing::rounding::{IsDueBefore, decide_cycle};
+use crate::timing::run::{Run, Runs, Schedule};
 
 const BLOCK: usize = 256;
 /// Maximum error in cycles of the fractional start of a move.

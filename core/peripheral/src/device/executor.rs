@@ -2,12 +2,8 @@
 //! A command is executed in a cycle p after everything else in it; EN, STEP and tick starts follow from p + 1 on.
 
 use crate::device::{Faults, sequencer::Sequencer, transceiver::Transceiver};
-use crate::{
-    config::Config,
-    protocol::{Reason, State, Status},
-    units::Instant,
-    wire::packet::ChannelCommand,
-};
+use crate::protocol::{Reason, State, Status};
+use crate::{config::Config, units::Instant, wire::packet::ChannelCommand};
 
 #[derive(Clone, Debug)]
 pub(super) struct Executor {

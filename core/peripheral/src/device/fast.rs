@@ -6,11 +6,9 @@
 //! run      * * . . . . * . * . .     only cycles with a deadline or a change of the line
 //! ```
 
-use crate::{
-    device::{Device, Framing, executor::Executor},
-    signal::Sink,
-    units::{Cycles, Instant},
-};
+use crate::device::{Device, Framing, executor::Executor};
+use crate::signal::Sink;
+use crate::units::{Cycles, Instant};
 
 impl Device {
     /// The next cycle, from [`Self::now`] on, in which something can change while the line keeps its level.

@@ -1,16 +1,11 @@
 //! The controller's side of the framed protocol (DESIGN A6): the effect of each frame, and its reply.
 
 use crate::device::{Faults, executor::Executor};
-use crate::{
-    config::Config,
-    protocol::{FrameOutcome, Kind, Reason, Reply},
-    signal::{Event, Positions, Sink},
-    units::Instant,
-    wire::{
-        frame::{Deframed, Deframer, Frame, Ticks},
-        packet::ALL,
-    },
-};
+use crate::protocol::{FrameOutcome, Kind, Reason, Reply};
+use crate::signal::{Event, Positions, Sink};
+use crate::wire::frame::{Deframed, Deframer, Frame, Ticks};
+use crate::wire::packet::ALL;
+use crate::{config::Config, units::Instant};
 
 #[derive(Clone, Debug)]
 pub(super) struct FramedProtocol {

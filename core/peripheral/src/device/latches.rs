@@ -1,10 +1,7 @@
 //! Register values that have no effect yet: the timing until COMMIT, and the commands of a tick until PUSH.
 
-use crate::{
-    config::{Bus, Config, Distribution, PulsePhasing},
-    signal::MAX_CHANNELS,
-    wire::packet::Tick,
-};
+use crate::config::{Bus, Config, Distribution, PulsePhasing};
+use crate::{signal::MAX_CHANNELS, wire::packet::Tick};
 use stepscope_registers as map;
 
 #[derive(Clone, Debug)]

@@ -43,16 +43,12 @@ pub use model_bus::ModelBus;
 pub use segments::SegmentEngine;
 pub use self_test::SelfTest;
 
-use crate::{
-    config::{Config, Protocol},
-    protocol::{Reason, Status},
-    signal::{Event, Levels, MAX_CHANNELS, PacketOutcome, Record, Sink},
-    units::Instant,
-    wire::{
-        packet::{Tick, Unpacked, Unpacker},
-        uart::{Receiver, RxEvent},
-    },
-};
+use crate::config::{Config, Protocol};
+use crate::protocol::{Reason, Status};
+use crate::signal::{Event, Levels, MAX_CHANNELS, PacketOutcome, Record, Sink};
+use crate::units::Instant;
+use crate::wire::packet::{Tick, Unpacked, Unpacker};
+use crate::wire::uart::{Receiver, RxEvent};
 use executor::Executor;
 use framed::FramedProtocol;
 use latches::Latches;

@@ -1,11 +1,9 @@
 //! The model as a [`RegisterBus`]: firmware runs on it unchanged.
 
+use crate::config::Config;
 use crate::device::Device;
-use crate::{
-    config::Config,
-    signal::{Sink, Unpaused},
-    units::{Cycles, Instant},
-};
+use crate::signal::{Sink, Unpaused};
+use crate::units::{Cycles, Instant};
 use stepscope_registers::RegisterBus;
 
 /// The peripheral on the bus of a processor, with an idle serial line.

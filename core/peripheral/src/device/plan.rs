@@ -12,13 +12,10 @@
 //! staggered: the j-th pulse rises at s + D + j*d, d = min(dp, floor(Ts/nd)), with nd channels that step
 //! ```
 
-use crate::{
-    config::{Config, DirLine, Distribution, PulsePhasing},
-    segment::PulseTimes,
-    signal::{Levels, MAX_CHANNELS},
-    units::Cycles,
-    wire::packet::{ChannelCommand, Tick},
-};
+use crate::config::{Config, DirLine, Distribution, PulsePhasing};
+use crate::signal::{Levels, MAX_CHANNELS};
+use crate::wire::packet::{ChannelCommand, Tick};
+use crate::{segment::PulseTimes, units::Cycles};
 use alloc::vec::Vec;
 
 /// STEP in bits 0..=15, DIR in bits 16..=31, as in a trace's levels.

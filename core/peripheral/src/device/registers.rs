@@ -3,13 +3,11 @@
 //! An access happens in the last clocked cycle p, after everything else in it. It reads the state in p; EN, STEP and tick
 //! starts follow from p + 1 on, as after a frame that ends in p.
 
+use crate::config::{Config, DirLine, Protocol};
 use crate::device::{Device, Faults, Framing, latches::Timing};
-use crate::{
-    config::{Config, DirLine, Protocol},
-    protocol::{Reason, State},
-    signal::{Event, Levels, MAX_CHANNELS, Sink},
-    units::Instant,
-};
+use crate::protocol::{Reason, State};
+use crate::signal::{Event, Levels, MAX_CHANNELS, Sink};
+use crate::units::Instant;
 use stepscope_registers as map;
 
 const _: () = assert!(map::position::REGISTER.count as usize == MAX_CHANNELS);

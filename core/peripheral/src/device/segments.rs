@@ -8,12 +8,10 @@
 //!           H ╎  D ╎ W ╎                   fall <= DIR <= rise < fall
 //! ```
 
-use crate::{
-    device::Faults,
-    segment::{CheckedSegments, FRACTION_BITS, Segment, SegmentList},
-    signal::{Levels, MAX_CHANNELS, Record, Sink},
-    units::{Cycles, Instant},
-};
+use crate::device::Faults;
+use crate::segment::{CheckedSegments, FRACTION_BITS, Segment, SegmentList};
+use crate::signal::{Levels, MAX_CHANNELS, Record, Sink};
+use crate::units::{Cycles, Instant};
 use alloc::{rc::Rc, vec::Vec};
 
 /// Runs validated segments.

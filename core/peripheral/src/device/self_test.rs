@@ -8,16 +8,12 @@
 //!       S      i_q            r   dp_i    r + 2*Ts
 //! ```
 
-use crate::{
-    config::{Bus, Config, DirLine},
-    device::{
-        Device, Faults,
-        plan::{Change, Lines},
-    },
-    segment::PulseTimes,
-    signal::{Event, Levels, Sink},
-    units::{Cycles, Instant},
-};
+use crate::config::{Bus, Config, DirLine};
+use crate::device::plan::{Change, Lines};
+use crate::device::{Device, Faults};
+use crate::segment::PulseTimes;
+use crate::signal::{Event, Levels, Sink};
+use crate::units::{Cycles, Instant};
 use alloc::vec::Vec;
 
 /// Length of one channel's part, in Ts.

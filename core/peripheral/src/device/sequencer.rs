@@ -4,16 +4,12 @@
 //! before. It leaves the queue at c0 and ends at e = c0 + M*Ts, where ticks_done counts. With the queue empty at e, the
 //! sequencer is idle: STEP = 0, DIR keeps its level.
 
-use crate::device::{
-    Faults,
-    plan::{Change, Lines, Plan, STEPS},
-};
-use crate::{
-    config::{Config, Protocol},
-    signal::{Event, Levels, MAX_CHANNELS, Sink},
-    units::{Cycles, Instant},
-    wire::packet::Tick,
-};
+use crate::config::{Config, Protocol};
+use crate::device::Faults;
+use crate::device::plan::{Change, Lines, Plan, STEPS};
+use crate::signal::{Event, Levels, MAX_CHANNELS, Sink};
+use crate::units::{Cycles, Instant};
+use crate::wire::packet::Tick;
 use alloc::{collections::VecDeque, vec::Vec};
 
 #[derive(Clone, Debug)]

@@ -5,12 +5,9 @@
 //! frame's end  DE rises    first start bit … last byte at t … DE falls
 //! ```
 
-use crate::{
-    config::Config,
-    signal::Levels,
-    units::{Cycles, Instant},
-    wire::{BitTimes, Schedule, Sender, frame::REPLY_LEN},
-};
+use crate::units::{Cycles, Instant};
+use crate::wire::{BitTimes, Schedule, Sender, frame::REPLY_LEN};
+use crate::{config::Config, signal::Levels};
 use alloc::rc::Rc;
 
 /// Bit times from the end of a frame to the rise of DE.

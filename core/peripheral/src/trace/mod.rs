@@ -23,10 +23,8 @@ pub use digest::Digest;
 pub use steps::{Step, steps, steps_in};
 pub use text::{ParseError, parse_line, write_record};
 
-use crate::{
-    signal::{Levels, Record},
-    units::Instant,
-};
+use crate::signal::{Levels, Record};
+use crate::units::Instant;
 
 /// Levels in cycle `at`; those of reset before the first record.
 pub fn levels_at(trace: &[Record], at: Instant) -> Levels {

@@ -1,9 +1,7 @@
 //! A trace as text: one record per line, cycle and levels in hexadecimal with a space between.
 
-use crate::{
-    signal::{Levels, Record},
-    units::Instant,
-};
+use crate::signal::{Levels, Record};
+use crate::units::Instant;
 use core::fmt;
 
 /// Writes one record and a line feed: `1f4a 700000001`.

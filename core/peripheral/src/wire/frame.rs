@@ -22,10 +22,8 @@
 
 pub use crate::protocol::{Kind, MAX_TICKS, Reason, Reply, State, Status};
 use crate::signal::{MAX_CHANNELS, Positions};
-use crate::wire::{
-    cobs::{CobsByte, CobsDecoder},
-    packet::Tick,
-};
+use crate::wire::cobs::{CobsByte, CobsDecoder};
+use crate::wire::packet::Tick;
 use alloc::vec::Vec;
 use crc::{CRC_32_ISCSI, Crc};
 

@@ -12,11 +12,8 @@
 //! assert_eq!(ChannelCommand { right: true, steps: 128 }.emit(), None); // seven bits hold at most 127
 //! ```
 
-use crate::{
-    config::Config,
-    signal::MAX_CHANNELS,
-    units::{Cycles, Instant},
-};
+use crate::units::{Cycles, Instant};
+use crate::{config::Config, signal::MAX_CHANNELS};
 
 const RIGHT: u8 = 1 << 7;
 pub const MAX_STEPS: u8 = RIGHT - 1;

@@ -1,9 +1,7 @@
 //! The driver bus, which peripheral owns (DESIGN A7).
 
-use crate::schema::{
-    PATENT, SHEETS, label,
-    rows::{fields, words},
-};
+use crate::schema::rows::{fields, words};
+use crate::schema::{PATENT, SHEETS, label};
 use stepscope_peripheral::config::{Bus, DirLine, Distribution, PulsePhasing, limits};
 
 fields! {

@@ -1,9 +1,7 @@
 //! An additional controller on the line (DESIGN A9).
 
-use crate::{
-    Hex,
-    schema::{PATENT, label, line::RECEIVER_BAUD, rows::settings},
-};
+use crate::Hex;
+use crate::schema::{PATENT, label, line::RECEIVER_BAUD, rows::settings};
 use alloc::vec::Vec;
 use stepscope_motion::moves::Axis;
 use stepscope_peripheral::config::{Bus, limits};

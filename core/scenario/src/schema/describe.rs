@@ -7,14 +7,10 @@
 //!       | { optional: type } | { list: type }
 //! ```
 
-use crate::{
-    Scenario, compact,
-    schema::{DOCUMENTS, Field, Group, Limit, Type, Typed, When, markdown::range_of},
-};
-use alloc::{
-    string::{String, ToString},
-    vec::Vec,
-};
+use crate::schema::{DOCUMENTS, Field, Group, Limit, Type, Typed, When, markdown::range_of};
+use crate::{Scenario, compact};
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
 use serde_json::{Map, Value, json};
 
 /// The schema as JSON text.

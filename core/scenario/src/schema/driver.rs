@@ -1,9 +1,7 @@
 //! Timing limits of a driver: a known model or custom rules. They do not affect a run.
 
-use crate::schema::{
-    SHEETS, label,
-    rows::{choices, settings, word_enums},
-};
+use crate::schema::rows::{choices, settings, word_enums};
+use crate::schema::{SHEETS, label};
 use core::ops::RangeInclusive;
 
 const NS: RangeInclusive<u64> = 0..=1_000_000_000;

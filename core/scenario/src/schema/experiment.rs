@@ -1,10 +1,8 @@
 //! The experiment itself, and its analysis.
 
 use crate::schema::PlantSettings;
-use crate::{
-    END_OF_TIME, MAX_CONTROLLERS, VERSION,
-    schema::{Controller, DriverTiming, Line, OWN, PATENT, SINE, Source, label, rows::settings},
-};
+use crate::schema::{Controller, DriverTiming, Line, OWN, PATENT, SINE, Source, label, rows::settings};
+use crate::{END_OF_TIME, MAX_CONTROLLERS, VERSION};
 use alloc::{string::String, vec::Vec};
 use stepscope_peripheral::config::{Bus, limits};
 

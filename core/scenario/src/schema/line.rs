@@ -1,18 +1,12 @@
 //! The serial line, its host and its faults (DESIGN A4 to A6, A9).
 
-use crate::{
-    END_OF_TIME,
-    schema::{
-        Field, OWN, PATENT, label,
-        rows::{settings, words},
-    },
-};
+use crate::END_OF_TIME;
+use crate::schema::rows::{settings, words};
+use crate::schema::{Field, OWN, PATENT, label};
 use alloc::vec::Vec;
 use core::ops::RangeInclusive;
-use stepscope_peripheral::{
-    config::{Protocol, SerialLine, limits},
-    protocol::MAX_TICKS,
-};
+use stepscope_peripheral::config::{Protocol, SerialLine, limits};
+use stepscope_peripheral::protocol::MAX_TICKS;
 
 const MAX_GLITCHES: usize = 10_000;
 const PPM: RangeInclusive<u64> = 0..=1_000_000;

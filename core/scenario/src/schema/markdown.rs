@@ -1,15 +1,10 @@
 //! Writes docs/scenario.md: one section per group, one row per field.
 
-use crate::{
-    Parts, Scenario, ToParts, VERSION,
-    schema::{Field, Group, Limit, Type, Typed, Word},
-    upgrade::{FIELDS, Rename, WORDS},
-};
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use crate::schema::{Field, Group, Limit, Type, Typed, Word};
+use crate::upgrade::{FIELDS, Rename, WORDS};
+use crate::{Parts, Scenario, ToParts, VERSION};
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
 use core::fmt::Write as _;
 
 /// Whole scenarios, which a test of the command runs.

@@ -1,9 +1,7 @@
 //! Step lengths and units of positions, speeds, accelerations and jerks (DESIGN B1); motion owns the types.
 
-use crate::schema::{
-    Field, SONOBE, ZHANG, label,
-    rows::{fields, kinds},
-};
+use crate::schema::rows::{fields, kinds};
+use crate::schema::{Field, SONOBE, ZHANG, label};
 use stepscope_motion::{
     limits,
     mechanics::{Acceleration, Direct, Distance, Jerk, Mechanics, Rotary, Screw, Speed, Wheel},

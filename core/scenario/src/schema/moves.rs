@@ -1,19 +1,14 @@
 //! An axis and its moves (DESIGN Part B); motion owns the types.
 
-use crate::schema::{
-    Field, OWN, SINE, SONG, SONOBE, ZHANG, label,
-    rows::{fields, kinds, words},
-};
+use crate::schema::rows::{fields, kinds, words};
+use crate::schema::{Field, OWN, SINE, SONG, SONOBE, ZHANG, label};
 use alloc::vec::Vec;
-use stepscope_motion::{
-    limits,
-    mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed},
-    motor::Motor,
-    moves::{
-        Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
-        Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
-    },
+use stepscope_motion::mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed};
+use stepscope_motion::moves::{
+    Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
+    RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
 };
+use stepscope_motion::{limits, motor::Motor};
 
 fields! {
     /// An axis runs its moves in order.

@@ -1,9 +1,7 @@
 //! Checks single numbers and lengths against their rows. Other crates check their own types.
 
-use crate::{
-    Parts, ToParts, Validator, ValueError,
-    schema::{Field, Group, Limit, Type},
-};
+use crate::schema::{Field, Group, Limit, Type};
+use crate::{Parts, ToParts, Validator, ValueError};
 use serde_json::Value;
 
 pub(crate) fn check_ranges(part: &dyn ToParts, validator: &mut Validator) {

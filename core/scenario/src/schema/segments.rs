@@ -2,10 +2,8 @@
 //!
 //! `_q16` counts 1/65536 cycle (48.16 fixed point), `_cycles` whole ones.
 
-use crate::schema::{
-    Direction, OWN, SONOBE, label,
-    rows::{choices, settings},
-};
+use crate::schema::rows::{choices, settings};
+use crate::schema::{Direction, OWN, SONOBE, label};
 use alloc::vec::Vec;
 use stepscope_peripheral::segment::LAST_CYCLE;
 

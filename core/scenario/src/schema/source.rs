@@ -1,19 +1,13 @@
 //! What the host sends, or the peripheral runs (DESIGN Part B, A8, A9).
 
-use crate::{
-    END_OF_TIME, Hex, SegmentLists,
-    schema::{
-        OWN, PATENT, SONOBE, label,
-        rows::{choices, settings, words},
-    },
-};
+use crate::schema::rows::{choices, settings, words};
+use crate::schema::{OWN, PATENT, SONOBE, label};
+use crate::{END_OF_TIME, Hex, SegmentLists};
 use crate::{StandAlone, schema::ZHANG};
 use alloc::{vec, vec::Vec};
 use stepscope_motion::moves::Axis;
-use stepscope_peripheral::{
-    units::Instant,
-    wire::{Schedule, frame::encode_frame},
-};
+use stepscope_peripheral::units::Instant;
+use stepscope_peripheral::wire::{Schedule, frame::encode_frame};
 
 choices! {
     /// One of five kinds. Packets and sends have at most 4 MiB of bytes.

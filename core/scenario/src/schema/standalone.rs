@@ -1,16 +1,11 @@
 //! Stand-alone controllers (CONTROLLER.md, "The format").
 
-use crate::schema::{
-    Field, OWN, SONG, ZHANG, label,
-    rows::{choices, settings, word_enums, words},
-};
+use crate::schema::rows::{choices, settings, word_enums, words};
+use crate::schema::{Field, OWN, SONG, ZHANG, label};
 use alloc::{vec, vec::Vec};
 use core::ops::RangeInclusive;
-use stepscope_controller::{
-    input::Signal,
-    limits,
-    parameters::{Initial, Policy, Release, ShortMove},
-};
+use stepscope_controller::parameters::{Initial, Policy, Release, ShortMove};
+use stepscope_controller::{input::Signal, limits};
 use stepscope_motion::moves::Move;
 
 const fn whole(range: &RangeInclusive<i128>) -> RangeInclusive<u64> {

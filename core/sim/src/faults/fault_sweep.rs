@@ -28,10 +28,8 @@ use crate::{Experiment, Run};
 use crate::{framed_host::Progress, noise::Random};
 use align::Alignment;
 use alloc::{format, vec, vec::Vec};
-use stepscope_motion::{
-    mechanics::Distance,
-    moves::{Axis, Cosine, Move},
-};
+use stepscope_motion::mechanics::Distance;
+use stepscope_motion::moves::{Axis, Cosine, Move};
 use stepscope_peripheral::config::{Bus, Protocol};
 use stepscope_scenario::{Line, Motion, Noise, Problem, Scenario, Source, ValueError};
 use watch::Watch;

@@ -22,15 +22,11 @@
 //! ```
 
 use alloc::{collections::BTreeSet, vec::Vec};
-use rand_xoshiro::{
-    SplitMix64,
-    rand_core::{Rng, SeedableRng},
-};
-use stepscope_controller::{
-    CheckedSetup, StandAlone, State,
-    input::{Change, Signal},
-    parameters::{Initial, Policy},
-};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use stepscope_controller::input::{Change, Signal};
+use stepscope_controller::parameters::{Initial, Policy};
+use stepscope_controller::{CheckedSetup, StandAlone, State};
 use stepscope_peripheral::units::Instant;
 
 /// The position after a cut.

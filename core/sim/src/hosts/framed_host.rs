@@ -24,11 +24,8 @@ pub use report::{HostStatus, Report, ReportRow, for_real_line};
 use crate::line::noise::Noise;
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::units::{Cycles, Instant};
-use stepscope_peripheral::wire::{
-    Line,
-    schedule::line_time,
-    uart::{Receiver, RxEvent},
-};
+use stepscope_peripheral::wire::uart::{Receiver, RxEvent};
+use stepscope_peripheral::wire::{Line, schedule::line_time};
 use stepscope_scenario::Host as Settings;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,16 +8,11 @@
 //! are nanoseconds since t0.
 
 use crate::{Experiment, lateness::Lateness};
-use alloc::{
-    format,
-    string::{String, ToString},
-    vec::Vec,
-};
+use alloc::string::{String, ToString};
+use alloc::{format, vec::Vec};
 use core::fmt;
-use stepscope_peripheral::{
-    units::Instant,
-    wire::{Schedule, schedule::line_time},
-};
+use stepscope_peripheral::units::Instant;
+use stepscope_peripheral::wire::{Schedule, schedule::line_time};
 
 /// Ticks named in a report.
 const MAX_NAMED: usize = 10;

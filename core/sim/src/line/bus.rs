@@ -8,12 +8,8 @@
 
 use crate::hosts::framed_host::FramedHost;
 use alloc::vec::Vec;
-use stepscope_peripheral::{
-    device::Device,
-    signal::{Event, Sink},
-    units::Instant,
-    wire::Line,
-};
+use stepscope_peripheral::signal::{Event, Sink};
+use stepscope_peripheral::{device::Device, units::Instant, wire::Line};
 
 #[derive(Clone, Debug)]
 pub(crate) struct Bus {

@@ -4,16 +4,12 @@
 //! are drawn frame by frame in the order of sending.
 
 use alloc::vec::Vec;
-use rand_xoshiro::{
-    Xoshiro256PlusPlus,
-    rand_core::{Rng, SeedableRng},
-};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::ForcedLevel;
 use stepscope_peripheral::wire::Schedule;
 use stepscope_peripheral::wire::{BitTimes, schedule::line_time};
-use stepscope_peripheral::{
-    units::{Cycles, Instant},
-    wire::ForcedLevel,
-};
 use stepscope_scenario::Noise as Rates;
 
 /// Seeded numbers, the same on every target.

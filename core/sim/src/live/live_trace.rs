@@ -1,10 +1,8 @@
 //! The last records of an endless session, and its positions (LIVE H4).
 
 use alloc::{collections::VecDeque, vec, vec::Vec};
-use stepscope_peripheral::{
-    signal::{Levels, Record, Sink},
-    units::Instant,
-};
+use stepscope_peripheral::signal::{Levels, Record, Sink};
+use stepscope_peripheral::units::Instant;
 
 /// A ring buffer of records.
 #[derive(Clone, Debug)]

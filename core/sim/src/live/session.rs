@@ -23,17 +23,12 @@ pub use panel::MAX_RECORDED_INPUTS;
 use crate::{Experiment, Run, replayed};
 use alloc::{collections::VecDeque, rc::Rc, vec, vec::Vec};
 use core::fmt;
-use stepscope_controller::{
-    NotEntered, StandAlone,
-    input::{Change, Signal},
-};
-use stepscope_peripheral::{
-    config::Protocol,
-    signal::{Event, Record, Sink},
-    trace::Digest,
-    units::{Cycles, Instant},
-    wire::{BitTimes, bit_times::BYTE_BITS},
-};
+use stepscope_controller::input::{Change, Signal};
+use stepscope_controller::{NotEntered, StandAlone};
+use stepscope_peripheral::signal::{Event, Record, Sink};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::{BitTimes, bit_times::BYTE_BITS};
+use stepscope_peripheral::{config::Protocol, trace::Digest};
 use stepscope_scenario::{
     END_OF_TIME, Hex, Host, LineScript, Noise, Problem, Scenario, ScriptedSend, Source, ValueError,
 };

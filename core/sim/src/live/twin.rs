@@ -8,27 +8,19 @@
 //! The device may have run before: sequence numbers, ticks, positions and faults are compared relative to the start. Ticks
 //! done during a motion depend on exact cycles and are not compared. The model has no plant.
 
-use crate::{
-    framed_host::Known,
-    session::{ReplyByte, Session},
-};
+use crate::framed_host::Known;
+use crate::session::{ReplyByte, Session};
 use alloc::{
     format,
     string::{String, ToString as _},
     vec,
     vec::Vec,
 };
-use stepscope_peripheral::{
-    device::Faults,
-    protocol::{Kind, Reply, State, Status},
-    signal::Positions,
-    trace::Digest,
-    units::{Cycles, Instant},
-    wire::{
-        frame::{Deframed, Deframer, Frame, Ticks, emit},
-        schedule::line_time,
-    },
-};
+use stepscope_peripheral::protocol::{Kind, Reply, State, Status};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::wire::frame::{Deframed, Deframer, Frame, Ticks, emit};
+use stepscope_peripheral::wire::schedule::line_time;
+use stepscope_peripheral::{device::Faults, signal::Positions, trace::Digest};
 use stepscope_scenario::{Problem, Scenario};
 
 /// Maximum cycles to wait until the model is idle.

@@ -5,17 +5,11 @@
 
 use crate::{controllers::Controllers, run::RunLimits};
 use alloc::vec::Vec;
-use stepscope_peripheral::{
-    config::Config,
-    device::SelfTest,
-    signal::{Event, Levels, Record, Sink},
-    units::{Cycles, Instant},
-};
-use stepscope_plant::{
-    Observer, Plant,
-    measures::Measures,
-    settling::{SHARE, Sample, StepResponse},
-};
+use stepscope_peripheral::signal::{Event, Levels, Record, Sink};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_peripheral::{config::Config, device::SelfTest};
+use stepscope_plant::settling::{SHARE, Sample, StepResponse};
+use stepscope_plant::{Observer, Plant, measures::Measures};
 use stepscope_scenario::Plants;
 
 #[derive(Clone, Debug)]

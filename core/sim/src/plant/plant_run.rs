@@ -3,10 +3,8 @@
 use crate::{Experiment, Run, RunLimits};
 use alloc::vec::Vec;
 use core::ops::Deref;
-use stepscope_peripheral::{
-    signal::Sink,
-    units::{Cycles, Instant},
-};
+use stepscope_peripheral::signal::Sink;
+use stepscope_peripheral::units::{Cycles, Instant};
 use stepscope_plant::Observer;
 
 /// A run with a sink and an observer of the plant per controller; dereferences to [`Run`].

@@ -3,14 +3,9 @@
 use super::{listed, nanos, read};
 use crate::convert::object;
 use serde::Serialize;
-use stepscope_core::{
-    peripheral::units::{Cycles, Instant},
-    sim::{
-        live_trace::LiveTrace,
-        session::{Input, Pace, Session, SessionClock},
-        session_times::SessionTimes,
-    },
-};
+use stepscope_core::peripheral::units::{Cycles, Instant};
+use stepscope_core::sim::session::{Input, Pace, Session, SessionClock};
+use stepscope_core::sim::{live_trace::LiveTrace, session_times::SessionTimes};
 use wasm_bindgen::prelude::*;
 
 /// Maximum cycles, and therefore records, per round.

@@ -3,14 +3,9 @@
 use super::{SCRIPT, SEGMENTS, listed, nanos, read};
 use crate::convert::object;
 use serde::Serialize;
-use stepscope_core::{
-    scenario::Source,
-    sim::{
-        Experiment,
-        framed_host::for_real_line,
-        raw_host::{RawHost, RawReport},
-    },
-};
+use stepscope_core::scenario::Source;
+use stepscope_core::sim::raw_host::{RawHost, RawReport};
+use stepscope_core::sim::{Experiment, framed_host::for_real_line};
 use wasm_bindgen::prelude::*;
 
 /// Covers the delays of a page (LIVE H3).

@@ -1,12 +1,8 @@
 //! Reads a session's description: an INI file.
 
-use crate::{
-    read::{
-        decimal::{Decimal, whole},
-        sample_rate::{parse_rate, period},
-    },
-    timebase::Timebase,
-};
+use crate::read::decimal::{Decimal, whole};
+use crate::read::sample_rate::{parse_rate, period};
+use crate::timebase::Timebase;
 use std::collections::BTreeSet;
 
 const MAX_NAMES: usize = 1000;

@@ -1,12 +1,8 @@
 //! Finds changes in unpacked samples.
 
 use super::metadata::Metadata;
-use crate::read::{
-    reading::ReadError,
-    recorder::{Recorder, grouped},
-    selection::select,
-    source::WATCH_EVERY,
-};
+use crate::read::recorder::{Recorder, grouped};
+use crate::read::{reading::ReadError, selection::select, source::WATCH_EVERY};
 
 /// sigrok has no device with more than 512 channels.
 const MAX_UNIT: usize = 64;

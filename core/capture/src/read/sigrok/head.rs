@@ -1,14 +1,10 @@
 //! Reads the lines before the samples: comments, output of sigrok-cli, and labels.
 
-use crate::{
-    read::{
-        decimal::{Decimal, power_of_ten, whole},
-        fields::{Fields, separator},
-        sample_rate::{SampleRate, period},
-        times::TimeUnit,
-    },
-    timebase::Timebase,
-};
+use crate::read::decimal::{Decimal, power_of_ten, whole};
+use crate::read::fields::{Fields, separator};
+use crate::read::sample_rate::{SampleRate, period};
+use crate::read::times::TimeUnit;
+use crate::timebase::Timebase;
 
 #[derive(Default)]
 pub(in crate::read) struct Head {

@@ -5,15 +5,10 @@
 //! ```
 
 use super::variables::Variables;
-use crate::{
-    capture::MAX_CHANNELS,
-    read::{
-        decimal::{power_of_ten, whole},
-        recorder::{Names, Recorder, quoted},
-        selection::Selection,
-    },
-    timebase::Timebase,
-};
+use crate::read::decimal::{power_of_ten, whole};
+use crate::read::recorder::{Names, Recorder, quoted};
+use crate::read::selection::Selection;
+use crate::{capture::MAX_CHANNELS, timebase::Timebase};
 use std::collections::BTreeSet;
 
 const MAX_DEPTH: usize = 200;

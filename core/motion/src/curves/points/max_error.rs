@@ -8,10 +8,8 @@
 //! x is the time from the nearer end, y the travel. In a smooth curve both errors are multiplied by 1 + h/h0 + h/h1, because
 //! the slope at an end also depends on the neighbor of length h0 or h1.
 
-use crate::{
-    curves::{cubic::Cubic, curve::greater},
-    timing::{MAX_ERROR, ROUNDING},
-};
+use crate::curves::{cubic::Cubic, curve::greater};
+use crate::timing::{MAX_ERROR, ROUNDING};
 use alloc::vec::Vec;
 
 /// The maximum error of a step's time is `time_s` + `travel`*x/y.

@@ -1,11 +1,9 @@
 //! Whether a curve through points has passed a position at a time, in 106 bits (DESIGN B1, B6).
 
 use super::{Point, Points};
-use crate::{
-    curves::cubic::{Cubic, slope_between},
-    moves::Interpolation,
-    timing::{Double, Number},
-};
+use crate::curves::cubic::{Cubic, slope_between};
+use crate::moves::Interpolation;
+use crate::timing::{Double, Number};
 
 /// Relative error of a position in 106 bits and of what follows from it: 2^-98.
 const MAX_EXACT_ERROR: f64 = f64::EPSILON * f64::EPSILON * 64.0;

@@ -1,15 +1,9 @@
 //! The two compensations of a sliced move (DESIGN B4): the top speed is raised until the rounded slices have enough steps
 //! (coarse), then the excess is removed from the end of the plateau and from the tail (fine).
 
-use crate::{
-    Curve, MAX_SPEED,
-    curves::{
-        cosine::Cosine,
-        curve::{greater, lesser},
-    },
-    round_half_up,
-    timing::Double,
-};
+use crate::curves::cosine::Cosine;
+use crate::curves::curve::{greater, lesser};
+use crate::{Curve, MAX_SPEED, round_half_up, timing::Double};
 use alloc::vec::Vec;
 use core::ops::Range;
 

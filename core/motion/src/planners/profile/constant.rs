@@ -1,10 +1,7 @@
 //! Plans a constant rate and a dwell (DESIGN B6).
 
-use crate::{
-    curves::constant_velocity::{Constant, Dwell},
-    limits, moves,
-    planners::quantities::Quantities,
-};
+use crate::curves::constant_velocity::{Constant, Dwell};
+use crate::{limits, moves, planners::quantities::Quantities};
 
 pub(super) fn constant(quantities: &mut Quantities<'_>, given: &moves::Constant) -> Option<Constant> {
     let steps = quantities.distance("distance", &given.distance);

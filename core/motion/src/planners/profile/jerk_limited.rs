@@ -1,10 +1,7 @@
 //! Plans a jerk-limited move (DESIGN B6).
 
-use crate::{
-    curves::jerk_limited::{JerkLimited, Limits},
-    moves,
-    planners::quantities::Quantities,
-};
+use crate::curves::jerk_limited::{JerkLimited, Limits};
+use crate::{moves, planners::quantities::Quantities};
 
 pub(super) fn plan(quantities: &mut Quantities<'_>, given: &moves::JerkLimited) -> Option<JerkLimited> {
     let steps = quantities.distance("distance", &given.distance);

@@ -1,12 +1,8 @@
 //! Plans the sines, exact and by segments (DESIGN B5, B6).
 
-use crate::{
-    Curve,
-    curves::{sine::Sine, sine_segments::SineSegments},
-    limits, moves,
-    planners::budget::{Budget, MAX_SEGMENTS, check_speed, exceeded},
-    planners::quantities::Quantities,
-};
+use crate::curves::{sine::Sine, sine_segments::SineSegments};
+use crate::planners::budget::{Budget, MAX_SEGMENTS, check_speed, exceeded};
+use crate::{Curve, limits, moves, planners::quantities::Quantities};
 
 pub(super) fn sine(quantities: &mut Quantities<'_>, given: &moves::Sine) -> Option<Sine> {
     let amplitude = quantities.distance("amplitude", &given.amplitude);

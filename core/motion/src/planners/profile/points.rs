@@ -1,11 +1,8 @@
 //! Plans a curve through points (DESIGN B6).
 
+use crate::curves::points::{Point, Points};
 use crate::{
-    curves::points::{Point, Points},
-    limits, moves,
-    planners::budget::check_speed,
-    planners::quantities::Quantities,
-    problem::Cause,
+    limits, moves, planners::budget::check_speed, planners::quantities::Quantities, problem::Cause,
     timing::Exact,
 };
 use alloc::vec::Vec;

@@ -1,12 +1,8 @@
 //! Plans a staircase of rates (DESIGN B3).
 
-use crate::{
-    curves::{staircase::Staircase, staircase_table::StaircaseTable},
-    limits, moves,
-    planners::budget::{Budget, MAX_TABLE_ROWS, exceeded},
-    planners::quantities::Quantities,
-    problem::Cause,
-};
+use crate::curves::{staircase::Staircase, staircase_table::StaircaseTable};
+use crate::planners::budget::{Budget, MAX_TABLE_ROWS, exceeded};
+use crate::{limits, moves, planners::quantities::Quantities, problem::Cause};
 
 /// Acceleration of level 1, in steps/s^2.
 const LEVEL_ACCELERATION: f64 = 1000.0;

@@ -1,20 +1,10 @@
 //! Plans moves over a distance in a given time: the cosine S-curve and shaped ramps (DESIGN B4).
 
-use crate::{
-    MAX_SPEED,
-    curves::{
-        cosine::Cosine,
-        ramp::Ramp,
-        ramps::Ramps,
-        sliced::{NotSliced, Sliced},
-    },
-    limits,
-    mechanics::Distance,
-    moves::{self, RampShape},
-    planners::budget::{Budget, MAX_SLICES, check_speed, exceeded},
-    planners::quantities::Quantities,
-    problem::Cause,
-};
+use crate::curves::sliced::{NotSliced, Sliced};
+use crate::curves::{cosine::Cosine, ramp::Ramp, ramps::Ramps};
+use crate::moves::{self, RampShape};
+use crate::planners::budget::{Budget, MAX_SLICES, check_speed, exceeded};
+use crate::{MAX_SPEED, limits, mechanics::Distance, planners::quantities::Quantities, problem::Cause};
 
 /// Relative tolerance of a slice's rate. The decimal length of a slice is seldom exact in binary, so a rate at the maximum
 /// may exceed it by a rounding.

@@ -1,18 +1,11 @@
 //! Plans a trapezoid, exact or by table (DESIGN B2).
 
-use crate::{
-    MAX_SPEED,
-    curves::{
-        acceleration_table::AccelerationTable,
-        trapezoid::{Limits, Trapezoid},
-        trapezoid_table::{NoTable, TrapezoidTable},
-    },
-    limits,
-    moves::{self, TrapezoidMethod},
-    planners::budget::{Budget, MAX_TABLE_ROWS, exceeded},
-    planners::quantities::Quantities,
-    problem::Cause,
-};
+use crate::curves::acceleration_table::AccelerationTable;
+use crate::curves::trapezoid::{Limits, Trapezoid};
+use crate::curves::trapezoid_table::{NoTable, TrapezoidTable};
+use crate::moves::{self, TrapezoidMethod};
+use crate::planners::budget::{Budget, MAX_TABLE_ROWS, exceeded};
+use crate::{MAX_SPEED, limits, planners::quantities::Quantities, problem::Cause};
 
 pub(super) fn exact(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<Trapezoid> {
     let steps = check(quantities, given)?;

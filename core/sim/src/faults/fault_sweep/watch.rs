@@ -2,11 +2,8 @@
 
 use crate::faults::fault_sweep::Tally;
 use alloc::vec::Vec;
-use stepscope_peripheral::{
-    protocol::FrameOutcome,
-    signal::{Event, MAX_CHANNELS, PacketOutcome, Record, Sink},
-    units::Instant,
-};
+use stepscope_peripheral::signal::{Event, MAX_CHANNELS, PacketOutcome, Record, Sink};
+use stepscope_peripheral::{protocol::FrameOutcome, units::Instant};
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Watch {

@@ -11,10 +11,8 @@
 use super::peer::{GivenUp, Job, Known, Peer, Progress};
 use alloc::vec::Vec;
 use stepscope_peripheral::units::{Cycles, Instant};
-use stepscope_peripheral::wire::{
-    bit_times::BYTE_BITS,
-    frame::{self, Deframed, Deframer, Kind, NAK_LEN, Reply, Ticks, reply_len},
-};
+use stepscope_peripheral::wire::bit_times::BYTE_BITS;
+use stepscope_peripheral::wire::frame::{self, Deframed, Deframer, Kind, NAK_LEN, Reply, Ticks, reply_len};
 use stepscope_scenario::{END_OF_TIME, Host as Settings};
 
 /// Bit times from the end of an exchange to the next frame: DE has fallen by then, whatever the controller's clock.

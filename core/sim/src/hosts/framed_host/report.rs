@@ -9,10 +9,8 @@ use alloc::{
     vec::Vec,
 };
 use core::fmt;
-use stepscope_peripheral::{
-    device::Faults,
-    protocol::{State, Status},
-};
+use stepscope_peripheral::device::Faults;
+use stepscope_peripheral::protocol::{State, Status};
 use stepscope_scenario::{Noise, Scenario};
 
 /// The scenario without its end and without noise, for a real line.

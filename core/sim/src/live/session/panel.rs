@@ -6,11 +6,8 @@
 //! ```
 
 use alloc::{collections::VecDeque, vec::Vec};
-use stepscope_controller::{
-    NotEntered, Refusal, StandAlone,
-    input::{Change, Input, Signal},
-    limits,
-};
+use stepscope_controller::input::{Change, Input, Signal};
+use stepscope_controller::{NotEntered, Refusal, StandAlone, limits};
 use stepscope_peripheral::units::Instant;
 use stepscope_scenario::PanelInput;
 
