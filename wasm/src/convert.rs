@@ -11,12 +11,10 @@ pub(crate) fn object(value: &impl Serialize) -> Result<JsValue, JsError> {
     value.serialize(&serde_wasm_bindgen::Serializer::json_compatible()).map_err(JsError::from)
 }
 
-/// Adds a field to an object.
 pub(crate) fn field(object: &Object, name: &str, value: &JsValue) {
     let _ = Reflect::set(object, &name.into(), value);
 }
 
-/// Adds an array of numbers to an object.
 pub(crate) fn numbers(object: &Object, name: &str, values: &[f64]) {
     field(object, name, &Float64Array::from(values));
 }

@@ -12,7 +12,6 @@ pub struct ValidatedScenario(pub(crate) sim::ValidatedScenario);
 impl ValidatedScenario {
     /// Reads, validates and plans any text.
     #[wasm_bindgen(constructor)]
-    #[must_use]
     pub fn new(json: &str) -> Self {
         Self(sim::ValidatedScenario::from_json(json))
     }
@@ -30,7 +29,6 @@ impl ValidatedScenario {
     }
 }
 
-/// All problems, one per line.
 pub(crate) fn listed(problems: &[Problem]) -> JsError {
     let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
     JsError::new(&lines.join("\n"))

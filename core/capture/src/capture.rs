@@ -129,7 +129,6 @@ pub struct Capture {
 
 impl Capture {
     /// An empty capture.
-    #[must_use]
     pub const fn new(format: Format) -> Self {
         Self {
             format,

@@ -54,7 +54,6 @@ struct Block {
 
 impl Changes {
     /// No changes.
-    #[must_use]
     pub const fn new() -> Self {
         Self { blocks: Vec::new(), len: 0, last: None, mask: 0 }
     }

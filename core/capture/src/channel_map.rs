@@ -232,7 +232,6 @@ impl ChannelMap {
     }
 
     /// The channel names in a map's text, for files with more channels than are read.
-    #[must_use]
     pub fn channel_names(text: &str) -> Vec<String> {
         let name = |pair: &str| {
             let (_, channel) = pair.split_once('=')?;
@@ -265,7 +264,6 @@ impl ChannelMap {
     }
 
     /// The same map with DEDGE instead of STEP.
-    #[must_use]
     pub fn with_both_edges(self) -> Self {
         let both = |entry: Entry| match Input::from_bit(entry.bit) {
             Some((Input::Step, motor)) => Entry { bit: Input::BothEdges.bit(motor), ..entry },
@@ -345,7 +343,6 @@ impl ChannelMap {
 }
 
 /// A channel's name, or `#` and its index if the name is ambiguous or could not be read back.
-#[must_use]
 pub fn channel_text(index: usize, channels: &[Channel]) -> String {
     let name = channels.get(index).map_or("", |channel| channel.name.as_str());
     if find_channel(name, channels) == Ok(index) && !name.contains([',', '!']) && name.trim() == name {

@@ -32,7 +32,6 @@ impl ChannelMap {
     /// let capture = Capture { channels: channels.into(), ..Capture::new(Format::Vcd) };
     /// assert_eq!(ChannelMap::proposed(&capture).to_text(&capture), "STEP0=X_STEP,DIR0=X_DIR,EN=!nEN");
     /// ```
-    #[must_use]
     pub fn proposed(capture: &Capture) -> Self {
         propose(Draft::new(capture))
     }

@@ -174,7 +174,6 @@ impl<'m> Records<'m, changes::Iter<'m>> {
     }
 
     /// Records with ticks as cycles, without rounding.
-    #[must_use]
     pub fn in_ticks(capture: &'m Capture, map: &'m ChannelMap) -> Self {
         Self::with_signals(capture.changes.iter(), Signals::new(map), Timebase::SECOND, 1)
     }

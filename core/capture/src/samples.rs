@@ -39,7 +39,6 @@ pub const SAMPLES: [Sample; 2] = [
 ];
 
 /// Finds a sample by its `id`.
-#[must_use]
 pub fn sample(id: &str) -> Option<&'static Sample> {
     SAMPLES.iter().find(|sample| sample.id == id)
 }

@@ -12,7 +12,6 @@ impl Timebase {
     pub const SECOND: Self = Self { numerator: 1, denominator: 1 };
 
     /// Ticks of `numerator / denominator` seconds; `None` if one is 0.
-    #[must_use]
     pub const fn new(numerator: u64, denominator: u64) -> Option<Self> {
         if numerator == 0 || denominator == 0 {
             return None;
@@ -25,25 +24,21 @@ impl Timebase {
     }
 
     /// Length of a tick in seconds.
-    #[must_use]
     pub const fn seconds(self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
 
     /// Numerator and denominator of the length in seconds.
-    #[must_use]
     pub const fn parts(self) -> (u64, u64) {
         (self.numerator, self.denominator)
     }
 
     /// The clock in Hz with one cycle per tick; `None` if it is not a whole number.
-    #[must_use]
     pub fn clock_hz(self) -> Option<u32> {
         if self.numerator == 1 { u32::try_from(self.denominator).ok() } else { None }
     }
 
     /// The cycle of a tick at `clock_hz`, rounded to the nearest, halves up; `None` if it does not fit.
-    #[must_use]
     pub fn cycle(self, tick: u64, clock_hz: u32) -> Option<u64> {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
         let (product, denominator) = (u128::from(tick).checked_mul(scaled)?, u128::from(self.denominator));
@@ -51,7 +46,6 @@ impl Timebase {
     }
 
     /// Whether this tick is a whole number of cycles.
-    #[must_use]
     pub fn is_on_cycle(self, tick: u64, clock_hz: u32) -> bool {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
         let product = u128::from(tick).checked_mul(scaled);
@@ -59,7 +53,6 @@ impl Timebase {
     }
 
     /// Cycles per tick; `None` if that is not a whole number.
-    #[must_use]
     pub fn cycles_per_tick(self, clock_hz: u32) -> Option<u64> {
         let scaled = u128::from(self.numerator) * u128::from(clock_hz);
         let exact = self.is_exact(clock_hz).then(|| scaled / u128::from(self.denominator))?;
@@ -67,7 +60,6 @@ impl Timebase {
     }
 
     /// Whether every tick is a whole number of cycles.
-    #[must_use]
     pub fn is_exact(self, clock_hz: u32) -> bool {
         (u128::from(self.numerator) * u128::from(clock_hz)).is_multiple_of(u128::from(self.denominator))
     }

@@ -63,13 +63,11 @@ impl Default for Format {
 
 impl Format {
     /// 7 or 8 data bits, a parity and 1 or 2 stop bits; `None` for other formats.
-    #[must_use]
     pub fn new(data: u8, parity: Parity, stop: u8) -> Option<Self> {
         ((7..=8).contains(&data) && (1..=2).contains(&stop)).then_some(Self { data, parity, stop })
     }
 
     /// Bits per word, from the start bit to the last stop bit.
-    #[must_use]
     pub fn bits(self) -> u8 {
         self.first_stop() + self.stop
     }

@@ -78,7 +78,6 @@ impl Default for RawLevels {
 
 impl RawLevels {
     /// The same levels, with `signal` at `level`.
-    #[must_use]
     pub const fn with(self, signal: Signal, level: bool) -> Self {
         let bit = 1 << signal as u32;
         Self(if level { self.0 | bit } else { self.0 & !bit })

@@ -29,9 +29,7 @@ pub(crate) struct Program {
     /// Current group and loop, from 1.
     pub(crate) group: u32,
     pub(crate) loop_: u32,
-    /// In steps.
     pub(crate) base: i128,
-    /// In display digits.
     pub(crate) length_sum: i64,
     /// How often each `repeat` was reached in this loop.
     pub(crate) repeat_counts: Vec<u32>,
@@ -122,7 +120,6 @@ pub(crate) struct Controller {
     pub(crate) script: Script,
     pub(crate) axis: VirtualAxis,
     pub(crate) eeprom: Eeprom,
-    /// The newest record of the journal.
     pub(crate) newest: Option<ValidRecord>,
     pub(crate) writes_journal: bool,
     /// Whether the opening record after a read is needed, or complete.

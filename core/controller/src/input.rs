@@ -33,7 +33,6 @@ named_enum! { (PartialOrd, Ord, Hash)
         JogMinus = "jog_minus",
         /// Returns to zero, or homes if the position is not trusted.
         Zero = "zero",
-        /// Starts homing.
         Home = "home",
         /// Enters or leaves DEBUG.
         Debug = "debug",

@@ -10,7 +10,6 @@ use alloc::vec::Vec;
 use core::ops::Range;
 use crc::{CRC_32_ISCSI, Crc};
 
-/// Bytes of a record.
 pub(crate) const RECORD: usize = 16;
 const WORD: usize = 4;
 const TRUST_MASK: u8 = 3;
@@ -18,7 +17,6 @@ const OPEN_FLAG: u8 = 4;
 
 const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
 
-/// The contents of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
     pub(crate) position: i32,
@@ -29,7 +27,6 @@ pub(crate) struct Entry {
     pub(crate) loop_: u16,
 }
 
-/// A record with a correct CRC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ValidRecord {
     slot: usize,

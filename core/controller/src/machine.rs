@@ -28,7 +28,6 @@ pub struct StandAlone {
 
 impl StandAlone {
     /// The controllers before cycle 0.
-    #[must_use]
     pub fn new(checked: &CheckedSetup) -> Self {
         let first_inputs =
             checked.controllers().first().into_iter().flat_map(|first| first.inputs.iter().copied());

@@ -44,7 +44,6 @@ pub(crate) struct Climb {
     pub(crate) plateau_hz: u32,
 }
 
-/// A step that was executed.
 pub(crate) struct ExecutedStep {
     pub(crate) is_first: bool,
     /// Interval of its rate, also if it came later.
@@ -222,7 +221,6 @@ mod tests {
         rates
     }
 
-    /// Runs of equal rates.
     fn runs(rates: &[u64]) -> Vec<(u64, usize)> {
         rates.chunk_by(|a, b| a == b).map(|run| (run[0], run.len())).collect()
     }

@@ -91,7 +91,6 @@ impl Numbers {
         Self(common.into_iter().chain(of_moves).map(|number| number as i32).collect())
     }
 
-    /// These numbers, if each is in its range.
     pub(crate) fn in_range(parameters: &Parameters, numbers: Vec<i32>) -> Option<Self> {
         let is_in_range = |(index, &number): (usize, &i32)| range(parameters, index).contains(&number.into());
         let all = numbers.len() == parameters.numbers() && numbers.iter().enumerate().all(is_in_range);

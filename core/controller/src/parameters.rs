@@ -35,7 +35,6 @@ pub enum Release {
     /// At constant speed; it stops immediately, as in Zhang 2012.
     #[default]
     AtOnce,
-    /// With acceleration and deceleration.
     Ramp,
 }
 
@@ -64,17 +63,13 @@ pub enum Initial {
 /// An instruction of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// Moves by a length.
     Move(Move),
-    /// Moves to a position.
     MoveTo(MoveTo),
-    /// Steps with given intervals.
     Profile(Profile),
     /// Homes; needs [`Parameters::home`].
     Home,
     /// Waits for a level.
     Wait(Wait),
-    /// Sets an output.
     Set(Set),
     /// Goes back a number of times.
     Repeat(Repeat),
@@ -101,11 +96,8 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub debounce_cycles: u32 = 160_000,
         /// Debounce time of limits, the home switch and `in_0` to `in_3`.
         pub sensor_debounce_cycles: u32 = 0,
-        /// Steps per unit of length.
         pub pulses_per_unit: u32 = 100,
-        /// Decimal places of lengths.
         pub decimals: u8 = 1,
-        /// The start-stop rate.
         pub start_speed_hz: u32 = 1000,
         /// Maximum of all requested speeds.
         pub max_speed_hz: u32 = 20_000,
@@ -114,7 +106,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub short_move: ShortMove = ShortMove::Document,
         /// Minimum trust for a start: 0 LOST, 1 HELD, 2 SURE.
         pub least_trust: u8 = 1,
-        /// Runs of the program.
         pub loops: u32 = 1,
         pub groups: Vec<Group> = vec![Group::Move(Move::default())],
         pub jog: Jog = Jog::default(),
@@ -122,7 +113,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub return_: Return = Return::default(),
         pub home: Option<Home> = None,
         pub soft_limits: Option<SoftLimits> = None,
-        /// A virtual axis with switches.
         pub axis: Option<Axis> = None,
         pub memory: Memory = Memory::default(),
         /// The script in any order.
@@ -131,9 +121,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
 
     /// Jogging by the buttons `jog_plus` and `jog_minus`.
     pub struct Jog {
-        /// Speed from READY.
         pub speed_hz: u32 = 1000,
-        /// Speed from DEBUG.
         pub fine_hz: u32 = 10,
         /// Level of acceleration; only for [`Release::Ramp`].
         pub level: u8 = 3,
@@ -143,7 +131,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
     /// The return to zero.
     pub struct Return {
         pub speed_hz: u32 = 1000,
-        /// Level of acceleration.
         pub level: u8 = 3,
     }
 
@@ -159,7 +146,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub fine_hz: u32 = 10,
         /// Steps away from the switch after it has opened, including the pending one.
         pub pull_off_steps: u32 = 20,
-        /// Maximum steps of a leg.
         pub max_travel_steps: u32 = 100_000,
         /// Position where the switch closes.
         pub position_steps: i64 = 0,
@@ -173,7 +159,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
 
     /// A virtual axis. A switch that is `None` belongs to the script; an end that is `None` is open.
     pub struct Axis {
-        /// Initial position.
         pub start_steps: i64 = 0,
         /// `limit_min` is closed here and to the left.
         pub min_switch_at_steps: Option<i64> = None,
@@ -191,11 +176,9 @@ parameters! { (Clone, Debug, PartialEq, Eq)
     /// The EEPROM.
     pub struct Memory {
         pub policy: Policy = Policy::PowerLoss,
-        /// Write time of a byte.
         pub byte_write_cycles: u32 = 136_000,
         /// Hold-up time of the supply after a power failure.
         pub hold_up_cycles: u64 = 3_200_000,
-        /// Records of the journal.
         pub slots: u32 = 8,
         /// At most [`Parameters::memory_len`] bytes.
         pub initial: Initial = Initial::Factory,
@@ -203,12 +186,10 @@ parameters! { (Clone, Debug, PartialEq, Eq)
 
     /// A `move`.
     pub struct Move {
-        /// In display digits.
         pub length: u32 = 1000,
         /// 1 right, 0 left.
         pub direction: u8 = 1,
         pub speed_hz: u32 = 5000,
-        /// Level of acceleration.
         pub level: u8 = 3,
         /// Delay after it.
         pub delay_ms: u32 = 0,
@@ -228,7 +209,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         /// Target in display digits.
         pub length: i32 = 0,
         pub speed_hz: u32 = 5000,
-        /// Level of acceleration.
         pub level: u8 = 3,
         /// Delay after it.
         pub delay_ms: u32 = 0,

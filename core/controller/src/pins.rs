@@ -13,7 +13,6 @@ pub(crate) struct Pins {
     pub(crate) step: bool,
     pub(crate) dir: bool,
     pub(crate) en: bool,
-    /// When STEP falls.
     fall: u64,
     last_fall: Option<u64>,
     /// When DIR changes.

@@ -29,7 +29,6 @@ impl StandAlone {
         is_free
     }
 
-    /// Drops the history.
     pub(crate) fn clear_history(&mut self) {
         for controller in &mut self.controllers {
             controller.panel.clear();

@@ -10,33 +10,71 @@ use stepscope_peripheral::units::{Cycles, Instant};
 #[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum Refusal {
     /// A number or a count is out of its range.
-    Range { given: i128, min: i128, max: i128 },
+    Range {
+        given: i128,
+        min: i128,
+        max: i128,
+    },
     /// `max_speed_hz` has shorter steps than a pulse allows.
-    TooFast { given_hz: u32, step: Cycles, pulse: Cycles, max_hz: u64 },
+    TooFast {
+        given_hz: u32,
+        step: Cycles,
+        pulse: Cycles,
+        max_hz: u64,
+    },
     /// A speed is above `max_speed_hz` or below 10 Hz.
-    Speed { given_hz: u32, max_speed_hz: u32 },
+    Speed {
+        given_hz: u32,
+        max_speed_hz: u32,
+    },
     /// An interval of a `profile` is shorter than a pulse allows; both in 1/65536 cycle.
-    ShortInterval { given: u64, min: u64 },
+    ShortInterval {
+        given: u64,
+        min: u64,
+    },
     /// A speed of homing is above the start-stop rate.
-    AboveStartSpeed { given_hz: u32, start_speed_hz: u32 },
+    AboveStartSpeed {
+        given_hz: u32,
+        start_speed_hz: u32,
+    },
     /// The first group of a `repeat` is not before it.
-    NotBefore { given: u32, group: u32 },
-    /// The number of a group does not exist.
-    NoSuchGroup { given: u32, groups: u32 },
+    NotBefore {
+        given: u32,
+        group: u32,
+    },
+    NoSuchGroup {
+        given: u32,
+        groups: u32,
+    },
     /// A group `home`, but no parameters for homing.
     NoHome,
-    /// A signal is not allowed here.
-    WrongSignal { given: Signal, allowed: &'static str },
+    WrongSignal {
+        given: Signal,
+        allowed: &'static str,
+    },
     /// The home switch has only one of its ends.
-    HalfSwitch { missing: &'static str },
+    HalfSwitch {
+        missing: &'static str,
+    },
     /// The script contains a switch that the axis drives.
-    Driven { signal: Signal, axis_field: &'static str },
+    Driven {
+        signal: Signal,
+        axis_field: &'static str,
+    },
     /// Power, emergency stop and clear apply to all controllers and belong to the first one.
-    OnlyFirstController { signal: Signal },
+    OnlyFirstController {
+        signal: Signal,
+    },
     /// An input has two entries in a cycle; `name` is a signal's name or `push_steps`.
-    DuplicateInput { name: &'static str, cycle: Instant },
+    DuplicateInput {
+        name: &'static str,
+        cycle: Instant,
+    },
     /// The initial contents are longer than the memory.
-    LongMemory { given: usize, bytes: usize },
+    LongMemory {
+        given: usize,
+        bytes: usize,
+    },
 }
 
 /// A refused value and its field.

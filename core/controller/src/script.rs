@@ -14,7 +14,6 @@ struct Queue {
 pub(crate) struct Script {
     /// The controller's own entries, and those shared by all: power, emergency stop and clear of the first controller.
     queues: [Queue; 2],
-    /// Inputs entered during the run.
     entered: VecDeque<Input>,
 }
 

@@ -60,7 +60,6 @@ crate::named::named_enum! { (Hash)
 
 /// How far a controller trusts its position.
 pub(crate) mod trust {
-    /// The position is unknown.
     pub(crate) const LOST: u8 = 0;
     /// The position was restored from memory.
     pub(crate) const HELD: u8 = 1;
@@ -69,7 +68,6 @@ pub(crate) mod trust {
 }
 
 /// Name of a trust level: 0 LOST, 1 HELD, 2 SURE; empty for any other.
-#[must_use]
 pub const fn trust_name(trust: u8) -> &'static str {
     match trust {
         trust::LOST => "LOST",

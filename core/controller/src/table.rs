@@ -11,7 +11,6 @@
 
 /// Steps of the first row, and the increment per block.
 const FIRST_STEPS: u64 = 30;
-/// Rows of a block.
 const EQUAL_ROWS: u64 = 5;
 /// Half the steps of block b, divided by b.
 const HALF_BLOCK: u64 = FIRST_STEPS * EQUAL_ROWS / 2;

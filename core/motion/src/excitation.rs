@@ -37,7 +37,6 @@ pub enum Excitation {
 
 impl Excitation {
     /// Steps of this excitation per full step of the motor.
-    #[must_use]
     pub fn steps_per_full_step(self) -> u16 {
         match self {
             Self::OnePhase | Self::TwoPhase => 1,
@@ -47,13 +46,11 @@ impl Excitation {
     }
 
     /// Steps of this excitation per electrical period.
-    #[must_use]
     pub fn steps_per_period(self) -> u32 {
         4 * u32::from(self.steps_per_full_step())
     }
 
     /// The currents of phases A and B after `steps` steps to the right (left negative), -1 to 1 of the peak.
-    #[must_use]
     pub fn currents(self, steps: i64) -> (f64, f64) {
         let per_full = i64::from(self.steps_per_full_step());
         let phase = steps.rem_euclid(4 * per_full);

@@ -3,7 +3,6 @@
 use alloc::{format, string::String};
 
 /// `value` rounded to an integer, with groups of three digits and a minus sign (U+2212).
-#[must_use]
 pub fn grouped(value: f64) -> String {
     let digits = format!("{value:.0}");
     let whole = digits.trim_start_matches('-');

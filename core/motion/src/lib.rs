@@ -57,7 +57,6 @@ pub use validator::{MAX_PROBLEMS, Validator};
 pub const MAX_SPEED: f64 = 1e7;
 
 /// floor(x + 1/2), exact because the sum is not formed: 0.49999999999999994 gives 0. Saturates; NaN gives 0.
-#[must_use]
 pub fn round_half_up(x: f64) -> i64 {
     // Truncation is faster than `libm::floor` on every target. Both differences are exact, because |x - truncated| < 1.
     let truncated = x as i64;

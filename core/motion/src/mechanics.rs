@@ -76,19 +76,16 @@ impl Mechanics {
     }
 
     /// Full step of the motor in degrees, if the mechanics have a shaft.
-    #[must_use]
     pub fn full_step_deg(&self) -> Option<f64> {
         self.shaft().map(|(full_step_deg, _)| full_step_deg)
     }
 
     /// Angle of one step in degrees, if the mechanics have a shaft.
-    #[must_use]
     pub fn step_deg(&self) -> Option<f64> {
         self.shaft().map(|(full_step_deg, microsteps)| full_step_deg / f64::from(microsteps))
     }
 
     /// Length of one step in mm, if the mechanics define it.
-    #[must_use]
     pub fn step_mm(&self) -> Option<f64> {
         match self {
             Self::Rotary(_) => None,
@@ -151,7 +148,6 @@ macro_rules! quantity {
 
         impl $name {
             /// The number in its unit.
-            #[must_use]
             pub const fn value(&self) -> f64 {
                 match self {
                     $(Self::$variant(value) => *value,)*
@@ -159,7 +155,6 @@ macro_rules! quantity {
             }
 
             /// The unit as in JSON, such as `steps` or `mm_s`.
-            #[must_use]
             pub const fn unit(&self) -> &'static str {
                 match self {
                     $(Self::$variant(_) => $key,)*
@@ -254,7 +249,6 @@ impl Distance {
 }
 
 quantity! {
-    /// A speed.
     Speed,
     StepsPerSecond = "steps_s" per |_| Some(1.0), by |_, _| None;
     MillimetersPerSecond = "mm_s" per Mechanics::step_mm, by Mechanics::millimeters_to_steps;
@@ -264,7 +258,6 @@ quantity! {
 }
 
 quantity! {
-    /// An acceleration.
     Acceleration,
     StepsPerSecond2 = "steps_s2" per |_| Some(1.0), by |_, _| None;
     MillimetersPerSecond2 = "mm_s2" per Mechanics::step_mm, by Mechanics::millimeters_to_steps;
@@ -272,7 +265,6 @@ quantity! {
 }
 
 quantity! {
-    /// A jerk.
     Jerk,
     StepsPerSecond3 = "steps_s3" per |_| Some(1.0), by |_, _| None;
     MillimetersPerSecond3 = "mm_s3" per Mechanics::step_mm, by Mechanics::millimeters_to_steps;

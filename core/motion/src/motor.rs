@@ -22,9 +22,7 @@ pub const MAX_PEAK_CURRENT: f64 = 1.4143;
 parameters! { (Clone, Debug, PartialEq)
     /// A two-phase hybrid stepper motor with a current-regulating bipolar driver, and its load.
     pub struct Motor {
-        /// Per phase.
         pub rated_current_a: f64 = 1.5,
-        /// Of one phase, as is the inductance.
         pub resistance_ohm: f64 = 1.6,
         pub inductance_mh: f64 = 4.3,
         /// With both phases at the rated current.
@@ -40,7 +38,6 @@ parameters! { (Clone, Debug, PartialEq)
         /// Maximum rate at which the motor is known to work with its load (the paper's f_s); `None` if only the torque
         /// limits the rate.
         pub working_rate_hz: Option<f64> = None,
-        /// Coulomb friction of the rotor.
         pub friction_mn_m: f64 = 5.0,
         /// Breakaway torque; `None` for the friction.
         pub stiction_mn_m: Option<f64> = None,
@@ -68,7 +65,6 @@ parameters! { (Clone, Debug, PartialEq)
         pub decay: Decay = Decay::Fast,
         /// Share of the off-time with fast decay; only for mixed and automatic decay.
         pub decay_share: f64 = 0.31,
-        /// Off-time of a chopper.
         pub off_us: f64 = 20.0,
         /// Time after switching on during which the chopper ignores the current.
         pub blank_us: f64 = 1.0,
@@ -94,7 +90,6 @@ pub enum Regulator {
 /// How the phase current falls during the off-time of a chopper.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Decay {
-    /// The phase is shorted.
     Slow,
     /// The bus voltage drives the current back.
     #[default]

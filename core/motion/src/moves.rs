@@ -36,7 +36,6 @@ pub enum Move {
 
 impl Move {
     /// The requested duration in s; `None` if it follows from other numbers.
-    #[must_use]
     pub fn requested_s(&self) -> Option<f64> {
         match self {
             Self::Cosine(cosine) => Some(cosine.duration_s),
@@ -222,7 +221,6 @@ pub enum PointUnit {
 
 impl PointUnit {
     /// A position in this unit.
-    #[must_use]
     pub const fn of(self, position: f64) -> Distance {
         match self {
             Self::Steps => Distance::Steps(position),

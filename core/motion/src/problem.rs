@@ -25,13 +25,11 @@ pub struct Problem<C = Cause> {
 
 impl<C> Problem<C> {
     /// A problem of the value at `path`.
-    #[must_use]
     pub fn new(path: impl Into<String>, cause: impl Into<C>) -> Self {
         Self { path: path.into(), cause: cause.into() }
     }
 
     /// The same problem with the cause type of a crate further up, such as a scenario's.
-    #[must_use]
     pub fn widen<D: From<C>>(self) -> Problem<D> {
         Problem { path: self.path, cause: self.cause.into() }
     }
@@ -124,38 +122,84 @@ fn smaller_load(of: &str) -> &'static str {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
-    /// A single value is wrong.
     Value(ValueError),
     /// The axis' mechanics, of this kind, do not have the unit.
-    NoSuchUnit { given: f64, unit: &'static str, mechanics: &'static str },
+    NoSuchUnit {
+        given: f64,
+        unit: &'static str,
+        mechanics: &'static str,
+    },
     /// Two ramps are longer than the move.
-    RampTooLong { ramp_s: f64, duration_s: f64 },
+    RampTooLong {
+        ramp_s: f64,
+        duration_s: f64,
+    },
     /// The top speed is below the start speed; both in steps/s.
-    TopBelowStart { top: f64, start: f64 },
+    TopBelowStart {
+        top: f64,
+        start: f64,
+    },
     /// The top speed is above the maximum of the table; both in steps/s.
-    TopAboveTable { top: f64, max: f64 },
+    TopAboveTable {
+        top: f64,
+        max: f64,
+    },
     /// The table's timer is slower than the rate in steps/s.
-    TimerTooSlow { rate: f64, timer_hz: u32 },
+    TimerTooSlow {
+        rate: f64,
+        timer_hz: u32,
+    },
     /// A speed that follows from other numbers is too high; both in steps/s.
-    TooFast { rate: f64, max: f64 },
+    TooFast {
+        rate: f64,
+        max: f64,
+    },
     /// Slices are so short that none has a step, even at the top speed of `rate` steps/s.
-    SliceTooShort { rate: f64, slice_s: f64 },
+    SliceTooShort {
+        rate: f64,
+        slice_s: f64,
+    },
     /// Slices cannot contain all steps, even at the maximum rate in steps/s.
-    SlicesTooFew { slices: u64, slice_s: f64, steps: u64, rate: f64 },
-    /// The distance rounds to no step.
-    NoSteps { steps: f64 },
+    SlicesTooFew {
+        slices: u64,
+        slice_s: f64,
+        steps: u64,
+        rate: f64,
+    },
+    NoSteps {
+        steps: f64,
+    },
     /// The time of a point is not later than that of the previous point by at least `min`; all in s.
-    NotRising { given: f64, before: f64, min: f64 },
+    NotRising {
+        given: f64,
+        before: f64,
+        min: f64,
+    },
     /// A tick (from 0) needs more steps than it has slots, so a rate above the limit of the bus; both in steps/s.
-    TooManySteps { tick: u64, steps: u64, slots: u8, rate: f64, limit: f64 },
-    /// A segment of steps has none.
+    TooManySteps {
+        tick: u64,
+        steps: u64,
+        slots: u8,
+        rate: f64,
+        limit: f64,
+    },
     NoSegmentSteps,
     /// The interval of a segment's step (from 0), in 1/65536 cycle, is out of its range.
-    SegmentInterval { step: u32, interval: i128, pulse: PulseTimes },
+    SegmentInterval {
+        step: u32,
+        interval: i128,
+        pulse: PulseTimes,
+    },
     /// The time after a segment, in 1/65536 cycle, exceeds 64 bits.
-    SegmentEnd { next: i128 },
+    SegmentEnd {
+        next: i128,
+    },
     /// A step (from 1) of a motion follows the previous step, or the start, after too few cycles.
-    StepTooSoon { step: u64, interval: u64, pulse: PulseTimes },
+    StepTooSoon {
+        step: u64,
+        interval: u64,
+        pulse: PulseTimes,
+    },
 }
 
 impl From<ValueError> for Cause {
@@ -166,7 +210,6 @@ impl From<ValueError> for Cause {
 
 impl Cause {
     /// Whether it follows from several fields, so that it is meaningless if one of them is invalid.
-    #[must_use]
     pub const fn joins_fields(&self) -> bool {
         !matches!(self, Self::Value(ValueError::Range { .. }) | Self::NoSteps { .. } | Self::NoSegmentSteps)
     }

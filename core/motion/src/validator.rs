@@ -28,7 +28,6 @@ impl<C> Default for Validator<C> {
 
 impl<C> Validator<C> {
     /// A validator of the value at `path`.
-    #[must_use]
     pub fn within(path: impl Into<String>) -> Self {
         Self { path: path.into(), problems: Vec::new(), count: 0 }
     }
@@ -75,13 +74,11 @@ impl<C> Validator<C> {
     }
 
     /// Path of the current value.
-    #[must_use]
     pub fn path(&self) -> &str {
         &self.path
     }
 
     /// Whether `field` has a listed problem.
-    #[must_use]
     pub fn has_problem(&mut self, field: &str) -> bool {
         self.at(field, |here| here.problems.iter().any(|problem| problem.path == here.path))
     }
@@ -141,19 +138,16 @@ impl<C: From<ValueError>> Validator<C> {
     }
 
     /// Number of problems so far, including those not listed.
-    #[must_use]
     pub const fn count(&self) -> usize {
         self.count
     }
 
     /// Whether there are no problems so far.
-    #[must_use]
     pub const fn is_ok(&self) -> bool {
         self.count == 0
     }
 
     /// The listed problems.
-    #[must_use]
     pub fn problems(self) -> Vec<Problem<C>> {
         self.problems
     }

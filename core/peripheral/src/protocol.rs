@@ -52,15 +52,12 @@ macro_rules! byte_enums {
 byte_enums! {
     /// The kind of a frame.
     pub enum Kind {
-        /// Queue ticks.
         Ticks = 1 "TICKS",
         /// Drivers on; leaves STOPPED.
         Enable = 2 "ENABLE",
         /// Drivers off, if nothing moves.
         Disable = 3 "DISABLE",
-        /// Request a reply.
         Status = 4 "STATUS",
-        /// Emergency stop.
         Stop = 5 "STOP",
         /// Set the expected sequence number to 0 and clear the fault flags.
         Resync = 6 "RESYNC",
@@ -100,9 +97,7 @@ byte_enums! {
 /// The status in every reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status {
-    /// State of the controller.
     pub state: State,
-    /// Free places in the queue.
     pub free: u8,
     /// Sequence number expected in the next TICKS.
     pub expected_seq: u8,
@@ -124,7 +119,6 @@ pub struct Reply {
 /// What became of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameOutcome {
-    /// Number of ticks queued.
     Queued(u8),
     /// Acknowledged again, but not queued again.
     Repeated,

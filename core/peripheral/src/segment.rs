@@ -106,7 +106,6 @@ pub enum Refusal {
 /// A refusal and its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Refused {
-    /// Index of the list.
     pub channel: usize,
     /// Index of the segment; `None` where the list itself is refused.
     pub segment: Option<usize>,
@@ -182,7 +181,6 @@ impl CheckedSegments {
         }
     }
 
-    /// The first step with an invalid interval, and the interval.
     fn first_invalid(&self, count: u32, interval: u64, add: i64) -> Option<(u32, i128)> {
         let min = i128::from(self.pulse.min_interval().0) << FRACTION_BITS;
         let max = i128::from(u64::MAX);

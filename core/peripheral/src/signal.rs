@@ -146,14 +146,11 @@ pub enum Event {
     Packet(PacketOutcome),
     /// The byte completed a frame, or exceeded its maximum length.
     Frame(FrameOutcome),
-    /// A reply was scheduled.
     Reply {
-        /// Its first start bit.
         start: Instant,
         /// The end of its last stop bit, where DE falls.
         end: Instant,
         reply: Reply,
-        /// The counters in a reply to POSITIONS.
         positions: Option<Positions>,
     },
     /// This controller and another node drive the line at the same time.
@@ -164,9 +161,7 @@ pub enum Event {
     Pushed,
     /// Firmware or an overload stopped the controller and cleared the queue.
     Stopped,
-    /// A tick left the queue and started.
     TickStart {
-        /// One byte per channel.
         commands: [u8; MAX_CHANNELS],
     },
     TickEnd,
@@ -183,7 +178,6 @@ pub enum Event {
     /// The raw level of a stand-alone controller's input changed.
     Input {
         controller: u8,
-        /// The number of the input in the controller crate.
         input: u8,
         level: bool,
     },

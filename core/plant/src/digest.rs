@@ -3,7 +3,6 @@
 use core::hash::Hasher;
 use twox_hash::XxHash64;
 
-/// In grid points.
 const PERIOD: u32 = 20;
 
 #[derive(Clone)]

@@ -27,7 +27,6 @@ pub(crate) struct PhaseInput {
     pub(crate) e: f64,
     /// Current in A.
     pub(crate) i: f64,
-    /// Resistance in ohm.
     pub(crate) r: f64,
     /// Voltage in V per A of change within the step.
     pub(crate) ra: f64,
@@ -39,7 +38,6 @@ pub(crate) struct PhaseInput {
 pub(crate) struct Phase {
     /// Target current in A.
     pub(crate) target: f64,
-    /// Share of fast decay.
     pub(crate) share: f64,
     chopper: Chopper,
 }
@@ -168,7 +166,6 @@ impl Phase {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Driver {
-    /// Commanded position in microsteps.
     pub(crate) commanded: i64,
     microsteps: i64,
     /// Peak current in A.

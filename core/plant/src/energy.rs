@@ -19,7 +19,6 @@ pub(crate) struct EnergyAccount {
 /// Energies of a motor since the start of the run in J: bus = copper + friction + viscous + diodes + load + stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyBalance {
-    /// Energy taken from the bus.
     pub bus: f64,
     /// Losses in windings and bridge.
     pub copper: f64,

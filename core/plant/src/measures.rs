@@ -67,9 +67,7 @@ impl Extremes {
 /// Positions of a rotor since its last STEP that can decide when it has settled, with their cycles.
 #[derive(Clone, Debug, Default)]
 struct Tail {
-    /// Each is above all later positions.
     above: Vec<(u64, f64)>,
-    /// Each is below all later positions.
     below: Vec<(u64, f64)>,
 }
 
@@ -184,7 +182,6 @@ pub struct MotorResult {
 pub struct PlantResult {
     pub cycle: u64,
     pub digest: u64,
-    /// One per channel.
     pub motors: Vec<MotorResult>,
     /// Supply current in A.
     pub load_a: Extremes,

@@ -11,7 +11,6 @@ pub(crate) const TURN: f64 = TAU;
 pub(crate) struct MotorConstants {
     /// Full step in rad.
     pub(crate) g: f64,
-    /// Force per A of a phase.
     pub(crate) k: f64,
     /// Resistance of a phase with its bridge in ohm.
     pub(crate) r: f64,
@@ -19,7 +18,6 @@ pub(crate) struct MotorConstants {
     pub(crate) l: f64,
     /// Mass of the rotor; without a coupling also of the load.
     pub(crate) m: f64,
-    /// Viscous friction.
     pub(crate) b: f64,
     pub(crate) detent: f64,
     pub(crate) load: Load,

@@ -55,7 +55,6 @@ parameters! { (Clone, Debug, PartialEq)
     pub struct DriverModel {
         pub regulator: CurrentControl = CurrentControl::Averaged,
         pub decay: CurrentDecay = CurrentDecay::Fast,
-        /// Off-time of a chopper.
         pub off_us: f64 = 20.0,
         /// Minimum on-time of a chopper.
         pub blank_us: f64 = 1.0,
@@ -70,11 +69,9 @@ parameters! { (Clone, Debug, PartialEq)
     /// A two-phase hybrid stepper motor with its load and driver. The defaults are those of a scenario.
     pub struct MotorModel {
         pub full_step_deg: f64 = 1.8,
-        /// Microsteps per full step.
         pub microsteps: u16 = 16,
         /// Rated current of a phase, both phases on.
         pub rated_current_a: f64 = 1.5,
-        /// Peak of the regulated phase current.
         pub peak_current_a: f64 = 1.5,
         pub resistance_ohm: f64 = 1.6,
         pub inductance_mh: f64 = 4.3,
@@ -82,24 +79,19 @@ parameters! { (Clone, Debug, PartialEq)
         pub holding_torque_mn_m: f64 = 400.0,
         pub rotor_inertia_g_cm2: f64 = 45.0,
         pub load_inertia_g_cm2: f64 = 0.0,
-        /// Coulomb friction of the load.
         pub load_torque_mn_m: f64 = 0.0,
-        /// Coulomb friction of the rotor.
         pub friction_mn_m: f64 = 5.0,
         /// Breakaway torque; `None` for the friction.
         pub stiction_mn_m: Option<f64> = None,
         pub viscous_un_m_s: f64 = 300.0,
         pub detent_torque_mn_m: f64 = 0.0,
-        /// Constant torque to the left.
         pub gravity_torque_mn_m: f64 = 0.0,
         /// Amplitude of a torque that depends on the angle of the load.
         pub sine_torque_mn_m: f64 = 0.0,
-        /// Its periods per turn of the load.
         pub sine_per_turn: f64 = 1.0,
         pub sine_phase_deg: f64 = 0.0,
         /// Stiffness of the coupling in N*m/rad; without it rotor and load are one mass.
         pub coupling_n_m_rad: Option<f64> = None,
-        /// Damping of the coupling.
         pub coupling_un_m_s: f64 = 0.0,
         pub drive: DriverModel = DriverModel::default(),
     }
@@ -113,7 +105,6 @@ parameters! { (Clone, Debug, PartialEq)
         pub buffer_uf: Option<f64> = None,
         /// Whether the source accepts reverse current.
         pub source_sinks: bool = false,
-        /// Idle current per driver.
         pub idle_ma: f64 = 0.0,
     }
 
@@ -121,7 +112,6 @@ parameters! { (Clone, Debug, PartialEq)
     pub struct SensorChain {
         pub bandwidth_hz: f64 = 3000.0,
         pub poles: u8 = 1,
-        /// Grid steps per conversion.
         pub adc_steps: u32 = 1,
         /// Value of one step of the converter.
         pub lsb: f64 = 0.024_414_062_5,
@@ -131,11 +121,9 @@ parameters! { (Clone, Debug, PartialEq)
 
     /// The encoder on each rotor: 4096 codes per turn, like the AS5600.
     pub struct Encoder {
-        /// Grid steps per reading.
         pub period_steps: u32 = 1000,
         /// Added to the angle, in codes.
         pub offset_lsb: f64 = 0.0,
-        /// Maximum noise in codes.
         pub noise_lsb: f64 = 0.0,
         /// Half of the play in codes.
         pub hysteresis_lsb: f64 = 0.0,
@@ -161,7 +149,6 @@ parameters! { (Clone, Debug, PartialEq)
         /// An accelerometer on each load, in rad/s^2; `None` for none.
         pub accelerometer: Option<SensorChain> = None,
         pub protection: Option<Protection> = None,
-        /// One per channel.
         pub motors: Vec<MotorModel> = Vec::new(),
     }
 }

@@ -47,7 +47,6 @@ pub struct PointEvents {
     /// The current sensor made a conversion.
     pub converted: bool,
     pub encoded: bool,
-    /// The conversion completed an overload.
     pub overload: bool,
 }
 
@@ -144,7 +143,6 @@ impl Overload {
 #[derive(Clone, Debug)]
 struct Accelerometer {
     chain: SignalChain,
-    /// Speed of the load at the last point.
     last_speed: f64,
 }
 

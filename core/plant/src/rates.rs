@@ -21,7 +21,6 @@ use alloc::vec::Vec;
 use stepscope_peripheral::signal::{Levels, Record};
 use stepscope_peripheral::units::Instant;
 
-/// Cycle of the first step of a trial.
 const FIRST_STEP: u64 = 1600;
 /// Rest after a start-stop trial, in s.
 const REST_S: f64 = 0.2;

@@ -8,7 +8,6 @@ use alloc::vec::Vec;
 /// Low-pass filters and a converter behind a sensor.
 #[derive(Clone, Debug)]
 pub struct SignalChain {
-    /// Output of each filter.
     poles: Vec<f64>,
     /// Share by which an output approaches its input in a grid step.
     factor: f64,

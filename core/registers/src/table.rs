@@ -25,7 +25,6 @@ pub enum Access {
 
 impl Access {
     /// Abbreviation in the data sheet.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Ro => "RO",
@@ -92,25 +91,21 @@ pub struct NamedValue {
 
 impl Field {
     /// A one in every bit of the field.
-    #[must_use]
     pub const fn mask(&self) -> u32 {
         u32::MAX >> (31 - (self.high - self.low)) << self.low
     }
 
     /// The field's value in the register value `register`.
-    #[must_use]
     pub const fn of(&self, register: u32) -> u32 {
         (register & self.mask()) >> self.low
     }
 
     /// `value` at the position of the field; excess bits are dropped.
-    #[must_use]
     pub const fn with(&self, value: u32) -> u32 {
         value << self.low & self.mask()
     }
 
     /// Whether any of its bits is set in the register value `register`.
-    #[must_use]
     pub const fn is_set(&self, register: u32) -> bool {
         register & self.mask() != 0
     }
@@ -118,7 +113,6 @@ impl Field {
 
 impl Register {
     /// Offset in bytes of the first address after the register or array.
-    #[must_use]
     pub const fn end(&self) -> u32 {
         self.offset + 4 * self.count
     }

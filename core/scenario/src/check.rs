@@ -45,7 +45,6 @@ pub struct CheckedScenario {
 
 impl CheckedScenario {
     /// Whether the host waits for a reply before it sends the next frame.
-    #[must_use]
     pub fn waits_for_replies(&self) -> bool {
         let is_framed = self.configs.first().is_some_and(|config| config.protocol() == Protocol::Framed);
         is_framed && self.source.is_ticks()
@@ -96,7 +95,6 @@ impl Scenario {
         })
     }
 
-    /// The channels of the first controller.
     pub(crate) const fn channels(&self) -> Channels<'static> {
         Channels { count: self.bus.channels, path: "bus.channels" }
     }

@@ -39,16 +39,22 @@ const TRAILING: &[char] = &['.', ',', ';', ':', '!', '?', ')', ']', '}', '>', '"
 #[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum LinkError {
     /// Longer than any link.
-    TooLong { given: usize, most: usize },
+    TooLong {
+        given: usize,
+        most: usize,
+    },
     /// It has no `c=`.
     NoScenario,
-    /// Made by a newer version.
-    Newer { given: u64, newest: u32 },
+    Newer {
+        given: u64,
+        newest: u32,
+    },
     /// Wrong CRC: truncated or changed.
     Damaged,
     /// The payload does not fit its codec, or inflates to too much.
-    Payload { most: usize },
-    /// The scenario cannot be read.
+    Payload {
+        most: usize,
+    },
     Scenario(Vec<Problem>),
 }
 
@@ -117,7 +123,6 @@ pub fn pack(json: &str) -> Result<String, LinkError> {
 }
 
 /// Appends `&name=text`, unless the link would become too long to read.
-#[must_use]
 pub fn with_part(link: String, name: &str, text: &str) -> String {
     if text.is_empty() || link.len() + name.len() + text.len() + 2 > MAX_FRAGMENT_BYTES {
         return link;
@@ -179,7 +184,6 @@ pub fn unpack(fragment: &str) -> Result<Packed, LinkError> {
 }
 
 /// Returns part `name` of a fragment without trailing punctuation. Accepts percent-encoded links and line breaks.
-#[must_use]
 pub fn part(fragment: &str, name: &str) -> Option<String> {
     fragment.trim().split('&').filter_map(|part| percent_decode_str(part).decode_utf8().ok()).find_map(
         |part| {

@@ -183,7 +183,6 @@ fn check_motor(motor: &Motor, here: &mut Validator) {
     here.range("driver.diode_v", diode_v, limits::DIODE_V, "V");
 }
 
-/// All motors of a plant share one supply.
 fn check_one_supply(motors: &[MotorAtPath<'_>], validator: &mut Validator) {
     let supply =
         |motor: &MotorAtPath<'_>| motor.motor.map_or(Motor::default().supply_v, |motor| motor.supply_v);

@@ -15,7 +15,6 @@ pub struct Preset {
 
 impl Preset {
     /// Reads the scenario. Tests check that every preset is valid.
-    #[must_use]
     pub fn scenario(&self) -> Scenario {
         Scenario::from_json(self.json).unwrap_or_default()
     }

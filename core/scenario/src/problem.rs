@@ -16,13 +16,11 @@ pub type Problem = motion::Problem<Cause>;
 pub type Validator = stepscope_motion::Validator<Cause>;
 
 /// Converts the problems of a plan.
-#[must_use]
 pub fn of_motion(problems: Vec<motion::Problem>) -> Vec<Problem> {
     problems.into_iter().map(motion::Problem::widen).collect()
 }
 
 /// Converts the problems of a configuration.
-#[must_use]
 pub fn of_config(problems: Vec<ConfigProblem>) -> Vec<Problem> {
     problems
         .into_iter()
@@ -38,7 +36,6 @@ pub enum Cause {
     Value(ValueError),
     Motion(motion::Cause),
     Config(ConfigError),
-    /// Not JSON.
     Syntax {
         line: usize,
         column: usize,
@@ -48,7 +45,6 @@ pub enum Cause {
     Type {
         detail: String,
     },
-    /// Written by a newer Stepscope.
     NewerVersion {
         given: u64,
         newest: u32,
@@ -139,7 +135,6 @@ impl From<ConfigError> for Cause {
 
 impl Cause {
     /// Whether it involves several fields, so that it is wrong if one of them cannot be read.
-    #[must_use]
     pub const fn joins_fields(&self) -> bool {
         match self {
             Self::Motion(cause) => cause.joins_fields(),

@@ -31,20 +31,17 @@ impl Scenario {
     }
 
     /// Reads as much as possible; unreadable fields get their defaults.
-    #[must_use]
     pub fn from_json_lenient(text: &str) -> (Self, Vec<Problem>) {
         read(text, None)
     }
 
     /// All fields as JSON.
-    #[must_use]
     pub fn to_json(&self) -> String {
         to_json(self)
     }
 
     /// All fields as JSON, or without defaults and indentation if that is too long. `None` if that exceeds
     /// [`MAX_TEXT_BYTES`] as well.
-    #[must_use]
     pub fn to_file_json(&self) -> Option<String> {
         self.to_json_within(MAX_WHOLE_BYTES, MAX_TEXT_BYTES)
     }
@@ -60,7 +57,6 @@ impl Scenario {
     }
 
     /// Canonical JSON, as in a link.
-    #[must_use]
     pub fn to_compact_json(&self) -> String {
         self.compact().to_string()
     }
@@ -81,7 +77,6 @@ pub fn part_from_json<T: Read>(text: &str) -> Result<T, Vec<Problem>> {
 }
 
 /// Writes a part of a scenario as JSON, every field included.
-#[must_use]
 pub fn to_json(part: &dyn ToParts) -> String {
     let mut text = String::new();
     compact::write_whole(&mut text, part, 0, usize::MAX);

@@ -27,7 +27,6 @@ pub trait Read {
 #[derive(Default)]
 pub struct Reader {
     validator: Validator,
-    /// The row of the current field.
     row: Option<&'static Field>,
     /// Version of the text, which decides which old names are accepted.
     version: u32,
@@ -187,7 +186,6 @@ impl Reader {
         self.validator.add(name, Cause::Type { detail });
     }
 
-    /// A choice is an object with one key.
     pub(super) fn choice<'v>(
         &mut self,
         value: Json<'v>,

@@ -13,7 +13,6 @@ use stepscope_peripheral::{config::Bus, signal::MAX_CHANNELS, units::Instant};
 const MAX_SEGMENTS: usize = 1_000_000;
 
 impl SegmentLists {
-    /// Checks and converts the lists.
     pub(crate) fn check(&self, bus: &Bus) -> Result<CheckedSegments, Vec<Problem>> {
         let mut validator = Validator::within("source.segments.channels");
         let channels = Channels { count: bus.channels, path: "bus.channels" };

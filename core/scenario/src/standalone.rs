@@ -264,7 +264,6 @@ impl Switch {
 
 impl Sensor {
     /// The controller's input signal.
-    #[must_use]
     pub const fn signal(self) -> Signal {
         match self {
             Self::LimitMin => Signal::LimitMin,

@@ -64,7 +64,6 @@ pub(crate) const WORDS: &[Rename] = &[
     until(u32::MAX, "1", "positive"),
 ];
 
-/// The rename of an old field name in a group.
 pub(crate) fn renamed_field(old: &str, group: &Group) -> Option<&'static Rename> {
     let has = |name: &str| group.fields.iter().any(|field| field.name == name);
     FIELDS.iter().find(|rename| rename.old == old && has(rename.new) && !has(old))
@@ -85,7 +84,6 @@ mod tests {
         vec::Vec,
     };
 
-    /// A position of a name in a scenario.
     struct Position {
         rename: &'static Rename,
         /// The scenario before and after the fields of the group, or the word.

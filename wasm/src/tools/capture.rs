@@ -29,11 +29,9 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// Maximum columns of an overview.
 const MAX_COLUMNS: u32 = 10_000;
 /// Maximum listed differences from a plan.
 const MAX_DIFFERENCES: usize = 10;
-/// Bytes per read.
 const PIECE: usize = 1 << 20;
 
 /// A file that is read with a function of position and length.
@@ -77,7 +75,6 @@ impl Seek for Pieces {
 pub struct CaptureFile {
     capture: Capture,
     error: Option<String>,
-    /// The given map.
     map: Option<String>,
     loaded: Option<LoadedCapture>,
     /// Options of `loaded`, unless it is aligned with a run.
@@ -99,7 +96,6 @@ pub fn sample_facts(id: &str) -> Result<JsValue, JsError> {
     object(&SampleFacts { file: sample.file, scenario: sample.scenario })
 }
 
-/// Contents of a file.
 #[derive(Serialize)]
 struct Facts<'a> {
     format: String,
@@ -107,7 +103,6 @@ struct Facts<'a> {
     count: usize,
     /// The given or proposed map; empty if there is none.
     map: String,
-    /// Why the given map is wrong.
     map_error: Option<String>,
     /// Channels beyond the first 64.
     left_out: u64,
@@ -117,11 +112,9 @@ struct Facts<'a> {
     /// Whether bytes are written as numbers in some base.
     has_base: bool,
     notes: &'a [String],
-    /// Why it is truncated.
     error: Option<&'a str>,
 }
 
-/// Options of a preview.
 #[derive(Deserialize)]
 struct PreviewOptions {
     map: Option<String>,
@@ -133,9 +126,7 @@ struct PreviewOptions {
     both_edges: Option<bool>,
     /// Time of the aligned step or byte, in s.
     at_s: Option<f64>,
-    /// Its channel.
     channel: Option<u8>,
-    /// Its index.
     aligned: Option<usize>,
     /// Maximum records in the views.
     most: Option<usize>,
@@ -164,7 +155,6 @@ const fn field_of(error: &OpenError) -> &'static str {
     }
 }
 
-/// A remedy, with the fields of the dialog.
 fn in_fields(remedy: &Remedy) -> String {
     match remedy {
         Remedy::BothEdges { .. } => "; for such a driver select the signal “STEP, both edges”".to_owned(),
@@ -180,12 +170,10 @@ fn in_fields(remedy: &Remedy) -> String {
     }
 }
 
-/// A note with its remedy.
 fn note(Note { text, remedy }: &Note) -> String {
     text.clone() + &remedy.as_ref().map(in_fields).unwrap_or_default()
 }
 
-/// A line with its remedies.
 fn line(line: &LineReport) -> String {
     line.to_text() + &line.remedies.iter().map(in_fields).collect::<String>()
 }
@@ -202,7 +190,6 @@ fn refused(error: &OpenError) -> JsValue {
     js_error.into()
 }
 
-/// A preview.
 #[derive(Serialize)]
 struct Preview<'a> {
     map: &'a str,
@@ -222,7 +209,6 @@ impl CaptureFile {
     /// Reads a file of `size` bytes with `read(at, length)` and reports progress to `watch(bytes)`. Saves at most `most`
     /// changes, bytes or positions. Of more than 64 channels those of `map` are read first. `base` is that of written bytes.
     #[wasm_bindgen(constructor)]
-    #[must_use]
     pub fn new(
         read_piece: Function,
         size: f64,
@@ -242,7 +228,6 @@ impl CaptureFile {
     }
 
     /// A sample, by its name.
-    #[must_use]
     pub fn sample(id: &str) -> Option<Self> {
         let bytes = samples::sample(id)?.bytes;
         let Reading { capture, error } = read(io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
@@ -355,7 +340,6 @@ impl CaptureFile {
     }
 
     /// The scenario that reproduces it, as JSON, or if that is too long, one with its clock and channels.
-    #[must_use]
     pub fn scenario(&self, file: &str, steps: bool) -> Option<String> {
         Some(self.loaded.as_ref()?.shown_scenario(file, steps).to_json())
     }
@@ -382,7 +366,6 @@ impl CaptureFile {
 
     /// Replies on TX in the visible part, by the addresses of controllers ([`replies::EncodedReplies`]): `{bytes, unknown}`. `None`
     /// without TX.
-    #[must_use]
     pub fn replies(&self, addresses: &[u8]) -> Option<Object> {
         let loaded = self.loaded.as_ref()?;
         let map = ChannelMap::parse(&loaded.map, &self.capture).ok()?;
@@ -400,7 +383,6 @@ impl CaptureFile {
     }
 
     /// Time of step `aligned` of a channel in a run, or of that byte of RX if the recording has no steps, in s.
-    #[must_use]
     pub fn time_of(&self, run: &[u8], clock_hz: u32, channel: u8, baud: u32, aligned: usize) -> Option<f64> {
         let kind = self.loaded.as_ref()?.events(channel).kind;
         Events::of_records(&records(run).collect::<Vec<_>>(), clock_hz, kind, channel, baud).at_s(aligned)
@@ -450,7 +432,6 @@ impl CaptureFile {
     }
 
     /// At most `most` records of 16 bytes: cycle and levels, little-endian. Empty without levels.
-    #[must_use]
     pub fn records(&self, from: u32, most: u32) -> Vec<u8> {
         let Some(loaded) = self.loaded.as_ref().filter(|loaded| loaded.has_levels()) else {
             return Vec::new();

@@ -13,7 +13,6 @@ use wasm_bindgen::prelude::*;
 #[derive(Default, Serialize)]
 struct ComparedMotion {
     name: &'static str,
-    /// Why it is impossible.
     why: Option<String>,
     /// Peaks in steps and s.
     speed: f64,

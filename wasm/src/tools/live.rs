@@ -30,7 +30,6 @@ fn nanos(ms: f64) -> u64 {
     (ms.max(0.0) * 1e6) as u64
 }
 
-/// All problems, in one sentence.
 fn listed(problems: &[Problem]) -> JsError {
     let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
     JsError::new(&lines.join("; "))

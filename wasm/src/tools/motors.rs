@@ -54,7 +54,6 @@ pub fn sheets() -> Result<JsValue, JsError> {
 
 /// The scenario with a plant and a listed motor and driver. Unknown names change nothing.
 #[wasm_bindgen]
-#[must_use]
 pub fn with_motor(json: &str, motor: &str, drive: &str) -> String {
     let (mut scenario, _) = Scenario::from_json_lenient(json);
     scenario.plant.get_or_insert_default();
@@ -212,7 +211,6 @@ impl ValidatedScenario {
     }
 }
 
-/// All refusals, one per line.
 fn refused(all: Vec<Refused>) -> JsError {
     JsError::new(&all.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
 }

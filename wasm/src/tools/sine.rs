@@ -11,7 +11,6 @@ use stepscope_core::motion::curves::{Memory, Segment};
 use stepscope_core::sim::SelectedAxis;
 use wasm_bindgen::prelude::*;
 
-/// Columns of rows.
 fn columns(rows: &[Row]) -> Object {
     let result = Object::new();
     let put = |name: &str, of: &dyn Fn(&Row) -> f64| {
@@ -30,7 +29,6 @@ fn columns(rows: &[Row]) -> Object {
 /// Rows `first..end` of a sweep over `count` values of d1, as columns. `sensor` is the bandwidth of a sensor relative to the
 /// fundamental; without one `filtered` is NaN.
 #[wasm_bindgen]
-#[must_use]
 pub fn sine_rows(
     from: f64,
     to: f64,
@@ -48,7 +46,6 @@ pub fn sine_rows(
 
 /// The d1 with minimum distortion of position for each number of segments in a range, as [`sine_rows`].
 #[wasm_bindgen]
-#[must_use]
 pub fn sine_best(from: f64, to: f64, order: u16, sensor: Option<f64>) -> Object {
     columns(&best_of_each(Distinct::new(from, to, Bounds { order, sensor })))
 }
@@ -56,7 +53,6 @@ pub fn sine_best(from: f64, to: f64, order: u16, sensor: Option<f64>) -> Object 
 /// The vertices of `segments` per quarter with minimum distortion of position, on the curve or free: `{angle_deg, height,
 /// thd}`; undefined outside of 1 to 32 segments.
 #[wasm_bindgen]
-#[must_use]
 pub fn sine_vertices(segments: usize, free: bool, order: u16) -> Option<Object> {
     let freedom = if free { Freedom::Free } else { Freedom::OnCurve };
     let best = optimum(segments, freedom, order)?;

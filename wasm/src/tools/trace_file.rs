@@ -8,10 +8,8 @@ use stepscope_core::inspect::trace::{diff::TraceDiff, stored_run::record_run};
 use stepscope_core::peripheral::signal;
 use wasm_bindgen::prelude::*;
 
-/// The comparison.
 #[derive(Serialize)]
 struct TraceComparison {
-    /// Equal rows.
     same: u64,
     start_cycle: u64,
     end_cycle: u64,

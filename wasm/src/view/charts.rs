@@ -26,21 +26,16 @@ use stroke::Stroke;
 use surface::Surface;
 use ticks::Ticks;
 
-/// A chart.
 #[derive(Deserialize)]
 pub(crate) struct Spec {
     /// Device pixels per CSS pixel.
     pub(crate) ratio: f64,
-    /// Font family of all labels.
     pub(crate) font: String,
-    /// In CSS pixels.
     pub(crate) font_px: f64,
     /// The time or frequency axis.
     pub(crate) x: Axis,
-    /// The axis of values.
     pub(crate) y: Axis,
     pub(crate) colors: Colors,
-    /// From the back to the front.
     pub(crate) series: Vec<Series>,
 }
 
@@ -49,11 +44,9 @@ pub(crate) struct Spec {
 pub(crate) struct Colors {
     pub(crate) label: String,
     pub(crate) axis: String,
-    /// Grid at the tick labels.
     pub(crate) grid: String,
 }
 
-/// One series.
 #[derive(Deserialize)]
 pub(crate) struct Series {
     /// Color as `#rrggbb`.
@@ -65,7 +58,6 @@ pub(crate) struct Series {
     /// Length of dashes and gaps in CSS pixels; 0 for a solid line.
     #[serde(default)]
     pub(crate) dash: f64,
-    /// Positions on the x axis.
     pub(crate) x: Vec<f64>,
     /// The values, such as `{"line": {"y": […]}}`.
     pub(crate) shape: Shape,
@@ -75,10 +67,14 @@ pub(crate) struct Series {
 #[derive(Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Shape {
-    /// A line through all points.
-    Line { y: Vec<f64> },
+    Line {
+        y: Vec<f64>,
+    },
     /// Minimum and maximum of each pixel column.
-    Band { min: Vec<f64>, max: Vec<f64> },
+    Band {
+        min: Vec<f64>,
+        max: Vec<f64>,
+    },
     /// A stem from the bottom of the chart to each value.
     Stems {
         y: Vec<f64>,
@@ -192,7 +188,6 @@ fn draw(surface: Surface<'_>, spec: &Spec) -> Result<(Plot, Vec<Stroke>), String
     Ok((plot, strokes))
 }
 
-/// A range with its ticks.
 struct Ruled(Range<f64>, Vec<f64>);
 
 impl Ranged for Ruled {

@@ -52,7 +52,6 @@ impl Readings {
 impl Simulation {
     /// Position, speed and acceleration of an axis: minimum and maximum of each column, and points of the ideal curve. The
     /// pulses have an acceleration only without a plan.
-    #[must_use]
     pub fn motion(&mut self, axis: u8, t0_s: f64, t1_s: f64, columns: u32) -> Object {
         let window = window(t0_s, t1_s, columns);
         let result = Object::new();
@@ -96,7 +95,6 @@ impl Simulation {
     }
 
     /// Records of one axis and RX, as for [`Simulation::record`].
-    #[must_use]
     pub fn records_of(&self, axis: u8) -> Vec<u8> {
         let axis = axis % 16;
         let mask = 1 << axis | 1 << (Levels::DIR_SHIFT + u32::from(axis)) | Levels::RX;
@@ -142,7 +140,6 @@ impl Simulation {
 
     /// Difference of the positions of this and another run in columns, `{min, max}`. `units` has the length of a step in each
     /// run, `span_s` the start and end.
-    #[must_use]
     pub fn difference(
         &mut self,
         other: &mut Simulation,
@@ -197,7 +194,6 @@ impl Simulation {
         self.recordings[self.selected].count_steps(channel);
     }
 
-    /// Pulses of a channel whose steps are counted.
     pub(crate) fn pulses_of(&self, channel: u8) -> Pulses<'_> {
         let recorded = self.selected();
         if self.recorded.is_some() && self.selected == 0 {

@@ -16,14 +16,12 @@ enum LinkContent {
 
 /// A part of a fragment, such as `v`, decoded and without trailing punctuation.
 #[wasm_bindgen]
-#[must_use]
 pub fn link_part(fragment: &str, name: &str) -> Option<String> {
     part(fragment, name)
 }
 
 /// A link with an additional part, unless it becomes too long.
 #[wasm_bindgen]
-#[must_use]
 pub fn link_with(link: String, name: &str, text: &str) -> String {
     with_part(link, name, text)
 }

@@ -91,13 +91,11 @@ impl Simulation {
     }
 
     /// Position of row `index` among the visible rows.
-    #[must_use]
     pub fn packet_position(&self, index: u32) -> Option<u32> {
         self.filter.position(index as usize).map(|position| position as u32)
     }
 
     /// Position of the next or previous match, with wraparound.
-    #[must_use]
     pub fn next_match(&self, position: Option<u32>, forward: bool) -> Option<u32> {
         self.filter.next_match(position.map(|at| at as usize), forward).map(|at| at as u32)
     }

@@ -7,7 +7,6 @@ use stepscope_core::peripheral::signal::{Event, Record, Sink};
 use stepscope_core::peripheral::units::Instant;
 use wasm_bindgen::prelude::*;
 
-/// Discards all records.
 struct NullSink;
 
 impl Sink for NullSink {
@@ -18,7 +17,6 @@ impl Sink for NullSink {
 impl Simulation {
     /// History of a panel: `records` (cycle, word, position, display), `inputs` (cycle, number, raw level), `ignored` presses
     /// (cycle, number, state), `writes` per memory cell; undefined for an unknown controller.
-    #[must_use]
     pub fn panel(&self, controller: usize) -> Option<Object> {
         let machine = self.run.stand_alone().filter(|machine| controller < machine.controllers())?;
         let record = |&PanelRecord { cycle, word, position, display }: &PanelRecord| {
@@ -46,7 +44,6 @@ impl Simulation {
 
     /// State of a controller at the start of a cycle: word, position, display, position and error of its axis, pulses per
     /// unit, decimals, power of the windings, loops and groups.
-    #[must_use]
     pub fn panel_at(&self, controller: usize, cycle: f64) -> Option<Vec<f64>> {
         let cycle = Instant(cycle.max(0.0) as u64);
         let mut machine = self.panels.last_stop(cycle)?.clone();

@@ -6,9 +6,7 @@ use stepscope_core::peripheral::{signal::Event, units::Instant};
 /// Maximum saved states.
 const STOPS: usize = 64;
 
-/// History of the panels.
 pub(crate) struct PanelLog {
-    /// Changes of inputs.
     pub(crate) inputs: Vec<(Instant, Event)>,
     /// States of the controllers at regular intervals.
     stops: Vec<StandAlone>,

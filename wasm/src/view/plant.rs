@@ -16,7 +16,6 @@ impl Simulation {
 
     /// Curves of the supply and a motor by name ([`SUPPLY`], [`MOTOR`]): `x` in s, `min` and `max`; undefined for an unknown
     /// motor.
-    #[must_use]
     pub fn plant_curves(&self, channel: usize, from: f64, to: f64, columns: usize) -> Option<Object> {
         let (log, values, names) = self.plant_values(channel)?;
         let window = CycleWindow { from: from.max(0.0) as u64, to: to.max(0.0) as u64, columns };
@@ -35,7 +34,6 @@ impl Simulation {
     }
 
     /// The same values at a cycle.
-    #[must_use]
     pub fn plant_at(&self, channel: usize, cycle: f64) -> Option<Object> {
         let (log, values, names) = self.plant_values(channel)?;
         let all = log.at(&self.selected().recording.trace, cycle.max(0.0) as u64);

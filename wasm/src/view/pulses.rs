@@ -9,7 +9,6 @@ use wasm_bindgen::prelude::*;
 #[wasm_bindgen]
 impl Simulation {
     /// Signals in columns: `{high, low, last}`, two words per column, with `margin` additional columns at each side.
-    #[must_use]
     pub fn pulses(&self, start_cycle: f64, end_cycle: f64, column_count: u32, margin: u32) -> Object {
         let Signals { trace, changes } = self.signals();
         let found = changes.columns(
@@ -27,7 +26,6 @@ impl Simulation {
     }
 
     /// Cycle of the next or previous edge of signal `bit`; kind is `any`, `rise` or `fall`.
-    #[must_use]
     pub fn next_edge(&self, bit: u8, cycle: f64, forward: bool, kind: &str) -> Option<f64> {
         let edge = match kind {
             "rise" => Edge::Rise,

@@ -6,14 +6,12 @@ use wasm_bindgen::prelude::*;
 
 /// Version of Stepscope.
 #[wasm_bindgen]
-#[must_use]
 pub fn version() -> String {
     env!("CARGO_PKG_VERSION").into()
 }
 
 /// The default scenario as JSON, with all fields.
 #[wasm_bindgen]
-#[must_use]
 pub fn default_scenario() -> String {
     Scenario::default().to_json()
 }

@@ -36,11 +36,9 @@ pub struct Simulation {
     pub(crate) recordings: Vec<ControllerRecording>,
     /// Index of the visible controller.
     pub(crate) selected: usize,
-    /// Filter of its packet table.
     pub(crate) filter: Filter,
     /// Records shown instead of the first controller's; empty once they are used.
     pub(crate) recorded: Option<Vec<Record>>,
-    /// Number of used records.
     processed: usize,
     pub(crate) panels: PanelLog,
     /// Recorded replies for [`replies::replace`]; empty once they are used.
@@ -68,16 +66,12 @@ impl Sink for RunRecorder {
     }
 }
 
-/// The recording of one controller.
 #[derive(Default)]
 pub(crate) struct ControllerRecording {
     pub(crate) recording: Recording,
     pub(crate) changes: Changes,
-    /// Timing check, if the scenario has a driver.
     pub(crate) timing: Option<TimingCheck>,
-    /// Log of its plant, if any.
     pub(crate) plant: Option<PlantLog>,
-    /// Counted steps of each channel.
     steps: Vec<Option<Vec<Step>>>,
 }
 
@@ -109,7 +103,6 @@ impl ControllerRecording {
         positions
     }
 
-    /// Replaces the trace by a recording.
     fn show(&mut self, recorded: Vec<Record>, timing: Option<TimingCheck>) {
         (self.recording.trace, self.recording.digest) = (recorded, Digest::default());
         (self.timing, self.changes) = (timing, Changes::default());
@@ -125,7 +118,6 @@ impl ControllerRecording {
         self.changes.extend(known);
     }
 
-    /// Counted steps of a channel.
     pub(crate) fn steps_of(&self, channel: u8) -> &[Step] {
         self.steps.get(usize::from(channel)).and_then(Option::as_deref).unwrap_or_default()
     }
@@ -212,7 +204,6 @@ impl Simulation {
         self.is_simulated = done;
     }
 
-    /// Number of records in the recording.
     fn recorded_count(&self) -> usize {
         let first = self.recordings.first().filter(|_| self.recorded.is_some());
         first.map_or(0, |first| first.recording.trace.len())
@@ -265,7 +256,6 @@ impl Simulation {
         }
     }
 
-    /// The selected controller.
     pub(crate) fn selected(&self) -> &ControllerRecording {
         &self.recordings[self.selected]
     }

@@ -16,7 +16,6 @@ struct Listed {
     rules: Rules,
 }
 
-/// Rules with the names of a scenario.
 #[derive(Serialize)]
 struct Rules {
     step_high_ns: u32,
@@ -101,7 +100,6 @@ impl Simulation {
     }
 
     /// Index of the next or previous violation in `timing().violations`.
-    #[must_use]
     pub fn next_violation(&self, cycle: f64, forward: bool) -> Option<u32> {
         let at = Instant(cycle.max(0.0) as u64);
         self.selected().timing.as_ref()?.next(at, forward).map(|index| index as u32)

@@ -7,7 +7,6 @@ use stepscope_core::inspect::trace::run_fingerprint::{RunFingerprint, VERSION, V
 use stepscope_core::peripheral::signal::Sink;
 use wasm_bindgen::prelude::*;
 
-/// A position in a run.
 #[derive(Serialize)]
 struct EdgePosition {
     edge: u64,
@@ -20,18 +19,14 @@ impl From<Mark> for EdgePosition {
     }
 }
 
-/// The result of a comparison with the run of the sender.
 #[derive(Serialize, Default)]
 struct RunComparison {
     /// Why it cannot be compared.
     error: Option<String>,
     same: bool,
-    /// Edges of all controllers.
     edges: u64,
-    /// The version of the sender, if different.
     version: Option<String>,
     own_version: &'static str,
-    /// The controller that differs.
     controller: usize,
     after: Option<EdgePosition>,
     until: Option<EdgePosition>,
@@ -42,7 +37,6 @@ struct RunComparison {
 #[wasm_bindgen]
 impl Simulation {
     /// The part `d` of a link: the digests of all controllers.
-    #[must_use]
     pub fn fingerprint(&self) -> String {
         RunFingerprint::of(
             self.recordings.iter().map(|recorded| Fingerprint::of(&recorded.recording.trace)).collect(),

@@ -24,7 +24,6 @@ const MAX_DIGITS: u32 = 30;
 
 impl Decimal {
     /// Reads a number with optional sign, point and exponent; `None` if it is not one or does not fit.
-    #[must_use]
     pub fn parse(text: &[u8]) -> Option<Self> {
         let (negative, text) = match text {
             [b'-', rest @ ..] => (true, rest),
@@ -77,7 +76,6 @@ impl Decimal {
     }
 
     /// The same number with at least `places` places; `None` if it does not fit.
-    #[must_use]
     pub fn with_places(self, places: u32) -> Option<Self> {
         if self.places <= places {
             let mantissa = self.mantissa.checked_mul(power_of_ten(places - self.places)?)?;

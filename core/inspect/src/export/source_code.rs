@@ -28,7 +28,6 @@ pub enum Language {
     /// C with arrays in program memory (avr-gcc).
     Avr,
     Rust,
-    /// One row per entry.
     Csv,
 }
 

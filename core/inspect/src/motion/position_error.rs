@@ -10,7 +10,6 @@ use stepscope_peripheral::trace::Step;
 pub struct Scaled<'a> {
     pub steps: &'a [Step],
     pub hz: f64,
-    /// Units per step.
     pub unit: f64,
 }
 

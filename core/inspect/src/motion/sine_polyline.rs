@@ -145,7 +145,6 @@ pub fn distortion(vertices: &[Vertex], bounds: impl Into<Bounds>) -> Distortion 
 pub struct Row {
     /// Maximum deviation in parts of the amplitude.
     pub d1: f64,
-    /// Segments per quarter.
     pub segments: usize,
     pub distortion: Distortion,
     /// Euclidean distance of line and cosine over 512 points, in parts of the amplitude.

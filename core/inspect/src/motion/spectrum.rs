@@ -77,7 +77,6 @@ impl Spectrum {
     }
 
     /// Adds the acceleration that a sensor of this bandwidth (-3 dB, in Hz) measures.
-    #[must_use]
     pub fn filtered_by(mut self, sensor_hz: Option<f64>) -> Self {
         self.acceleration_filtered = sensor_hz.map(|sensor_hz| {
             let harmonics = (1..).zip(&self.acceleration.amplitudes);

@@ -47,7 +47,6 @@ pub struct Dissector<'a> {
     pub protocol: Protocol,
     /// Whether raw packets begin with an address.
     pub addressed: bool,
-    /// The number of channels of the controller with an address.
     pub channels: &'a dyn Fn(u8) -> u8,
 }
 
@@ -195,7 +194,6 @@ impl Content {
         self.decoded.get(..self.decoded.len() - checked).unwrap_or_default()
     }
 
-    /// The bytes on the line of a range of decoded bytes.
     fn line_range(&self, decoded: Range<usize>) -> Range<usize> {
         let last = decoded.end.checked_sub(1).and_then(|last| self.offsets.get(last));
         let first = self.offsets.get(decoded.start).copied().unwrap_or_default();

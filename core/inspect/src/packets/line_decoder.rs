@@ -17,7 +17,6 @@ use stepscope_peripheral::{config::Config, trace::levels_at};
 pub struct Span {
     pub start: u64,
     pub end: u64,
-    /// From the longest to the shortest.
     pub texts: Vec<String>,
     pub bad: bool,
     pub packet: Option<usize>,

@@ -70,7 +70,6 @@ pub struct LoggedPacket {
 /// A reply of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordedReply<'a> {
-    /// First start bit.
     pub start: Instant,
     pub end: Instant,
     pub bytes: &'a [u8],

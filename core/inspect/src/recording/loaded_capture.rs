@@ -37,7 +37,6 @@ pub struct LoadedPart {
     pub from_s: f64,
     pub to_s: f64,
     pub end_s: f64,
-    /// Loaded records, of all records of the recording.
     pub records: usize,
     pub of: usize,
 }
@@ -64,7 +63,6 @@ pub struct LoadedCapture {
     position_steps: Option<Vec<Step>>,
     /// Per channel, where cycles round the times of its steps.
     exact_steps: Vec<(u8, ExactTimes)>,
-    /// Motors with generated pulses, and their source.
     generated_pulses: Vec<(u8, PulseSource)>,
 }
 

@@ -70,7 +70,6 @@ pub enum OpenError {
     NoSampleRate(Format),
     NoBaud,
     Baud,
-    /// The given UART format, and the allowed ones.
     Uart(String, &'static str),
     /// No steps, and a line cannot be decoded: the reason and remedies.
     NoRate(String, Vec<Remedy>),

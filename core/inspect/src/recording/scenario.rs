@@ -55,7 +55,6 @@ pub enum NotReproducible {
     NoBytes,
     Channel(u8, Cause),
     FewCycles(u32, u32),
-    /// The first problem of the scenario.
     Invalid(Problem),
 }
 

@@ -6,7 +6,6 @@ use stepscope_peripheral::signal::{Levels, MAX_CHANNELS};
 use stepscope_peripheral::wire::frame::{Deframed, Deframer, Ticks};
 use stepscope_peripheral::{protocol::Kind, signal::Record, units::Instant};
 
-/// Edges of a rate measurement.
 pub(super) const MEASURED_EDGES: usize = 4000;
 /// Gap in bit times that ends a raw packet.
 pub(super) const GAP_BITS: u64 = 45;

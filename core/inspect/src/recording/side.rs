@@ -37,7 +37,6 @@ impl Side<'_> {
 /// The exact times of steps whose cycles are rounded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExactTimes {
-    /// One tick of the file per step.
     pub ticks: Vec<u64>,
     pub base: Timebase,
 }

@@ -44,7 +44,6 @@ impl core::error::Error for BadLine {}
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Difference {
     pub line: u64,
-    /// The earlier cycle of both.
     pub cycle: Instant,
     pub file: Levels,
     pub run: Levels,
@@ -60,7 +59,6 @@ impl Difference {
 /// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// Records that agree.
     pub same: u64,
     /// First and last cycle that agree.
     pub range: (Instant, Instant),

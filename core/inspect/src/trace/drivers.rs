@@ -10,7 +10,6 @@ use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheet {
     pub model: DriverModel,
-    /// Its name in a scenario.
     pub id: &'static str,
     pub name: &'static str,
     /// The document, and values to check.

@@ -17,7 +17,6 @@ pub(crate) const MAX_CHECKPOINTS: usize = 16;
 /// The digest and checkpoints of a trace.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fingerprint {
-    /// The digest of the trace.
     pub digest: u64,
     pub records: u64,
     /// High halves of the digests after 1, 2, 3, … times [`Self::spacing`] records.
@@ -118,9 +117,7 @@ pub enum FingerprintMatch {
 /// The trace that ends first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shorter {
-    /// The checked trace.
     This,
-    /// The trace of the fingerprint.
     Other,
 }
 

@@ -30,8 +30,9 @@ pub struct RunFingerprint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum RunFingerprintError {
-    /// Its form is that of a newer version.
-    Newer { given: u32 },
+    Newer {
+        given: u32,
+    },
     /// Wrong CRC, or no fingerprint.
     Damaged,
 }

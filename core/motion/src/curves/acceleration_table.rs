@@ -22,7 +22,6 @@ pub struct AccelerationTable {
 impl AccelerationTable {
     /// From `start_speed` >= 1/2 to `top_speed` >= `start_speed` steps/s with `acceleration` > 0 steps/s^2; a timer of
     /// `timer_hz` counts the reloads. Each number means its shortest decimal.
-    #[must_use]
     pub fn new(start_speed: f64, top_speed: f64, acceleration: f64, timer_hz: u32) -> Self {
         let [start_speed, top_speed, acceleration] = [start_speed, top_speed, acceleration].map(Exact::of);
         Self::exact([&start_speed, &top_speed], &acceleration, timer_hz)
@@ -34,25 +33,21 @@ impl AccelerationTable {
     }
 
     /// Clock of the timer that counts the reloads.
-    #[must_use]
     pub fn timer_hz(&self) -> u32 {
         self.timer_hz
     }
 
     /// Index of the last row, which has the top speed.
-    #[must_use]
     pub fn top(&self) -> u64 {
         self.top
     }
 
     /// Pulse rate of a row in steps/s, not decreasing; rows after the last have its rate.
-    #[must_use]
     pub fn rate(&self, row: u64) -> u64 {
         if row < self.top { self.climb.rate(row) } else { self.top_rate }
     }
 
     /// Timer reload of a row; 0 if the timer is slower than the rate.
-    #[must_use]
     pub fn reload(&self, row: u64) -> u64 {
         u64::from(self.timer_hz).checked_div(self.rate(row)).unwrap_or(0)
     }

@@ -31,7 +31,6 @@ pub struct Breakpoints {
 
 impl Breakpoints {
     /// The breakpoints of a plan.
-    #[must_use]
     pub fn of(plan: &AxisPlan) -> Self {
         let moves = plan.moves().iter().map(|planned| {
             let period_s = planned.profile.repeats().map(|(period_s, _)| period_s);
@@ -45,7 +44,6 @@ impl Breakpoints {
 
     /// The first period as (start, end) in s of the periodic move that contains the window, if the window is at least as
     /// long: then a curve has the same extremes in both.
-    #[must_use]
     pub fn period_within(&self, from_s: f64, to_s: f64) -> Option<(f64, f64)> {
         let planned_move = self.moves.get(self.moves.partition_point(|planned| planned.end_s <= from_s))?;
         let period_s = planned_move.period_s.filter(|period_s| to_s - from_s >= *period_s)?;

@@ -15,7 +15,6 @@ pub struct Constant {
 
 impl Constant {
     /// `steps` (left negative) at `speed` > 0 steps/s.
-    #[must_use]
     pub fn new(steps: i64, speed: f64) -> Self {
         Self::from_exact(steps, Double::decimal(speed))
     }
@@ -82,7 +81,6 @@ pub struct Dwell {
 
 impl Dwell {
     /// A pause of `duration_s` >= 0.
-    #[must_use]
     pub fn new(duration_s: f64) -> Self {
         Self { duration_s }
     }

@@ -29,7 +29,6 @@ pub struct Cosine {
 
 impl Cosine {
     /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, from 0 to half of it.
-    #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64) -> Self {
         debug_assert!((0.0..=duration_s / 2.0).contains(&ramp_s), "ramps of {ramp_s} s in {duration_s} s");
         let top_speed = steps.unsigned_abs() as f64 / (duration_s - ramp_s);
@@ -37,14 +36,12 @@ impl Cosine {
     }
 
     /// f_max in steps/s, the plateau speed.
-    #[must_use]
     pub fn top_speed(&self) -> f64 {
         self.top_speed
     }
 
     /// The longest ramp in s with a top speed of at most `speed` steps/s, T - n/speed; a move can use up to T/2 of it.
     /// `None` if the move is too fast even without ramps.
-    #[must_use]
     pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
         longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, 0.5)
     }

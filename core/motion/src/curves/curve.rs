@@ -73,7 +73,6 @@ impl Peaks {
     }
 
     /// The maximum of each number.
-    #[must_use]
     pub fn max(self, other: Self) -> Self {
         Self {
             speed: greater(self.speed, other.speed),
@@ -85,7 +84,6 @@ impl Peaks {
     }
 
     /// Maximum speed and acceleration as a text.
-    #[must_use]
     pub fn to_text(self) -> String {
         format!("peak {} steps/s, {} steps/s\u{b2}", grouped(self.speed), grouped(self.acceleration))
     }

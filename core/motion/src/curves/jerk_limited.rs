@@ -54,13 +54,10 @@ pub struct JerkLimited {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Phases<N> {
     jerk: N,
-    /// t_j.
     jerk_s: N,
-    /// t_a.
     constant_s: N,
     /// v, the maximum speed of the move.
     peak_speed: N,
-    /// t_r.
     ramp_s: N,
     /// s_r, at most half of the steps.
     ramp_steps: N,
@@ -143,7 +140,6 @@ impl<N: Number> Phases<N> {
 
 impl JerkLimited {
     /// `steps` (left negative, not 0) from rest to rest.
-    #[must_use]
     pub fn new(steps: i64, limits: Limits) -> Self {
         let [speed, acceleration, jerk] =
             [limits.speed, limits.acceleration, limits.jerk].map(Double::decimal);
@@ -158,14 +154,12 @@ impl JerkLimited {
     }
 
     /// Maximum speed of the move in steps/s.
-    #[must_use]
     pub fn peak_speed(&self) -> f64 {
         self.phases.peak_speed
     }
 
     /// Times of the first four phases in s: jerk, constant acceleration, jerk, plateau. The other three mirror the first
     /// three.
-    #[must_use]
     pub fn phases_s(&self) -> [f64; 4] {
         let Phases { jerk_s, constant_s, ramp_s, duration_s, .. } = self.phases;
         [jerk_s, constant_s, jerk_s, (duration_s - 2.0 * ramp_s).or_zero()]

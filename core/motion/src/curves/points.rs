@@ -47,7 +47,6 @@ pub struct Points {
 
 impl Points {
     /// A curve through at least two points (time in s, position in steps) with rising times; `None` for others.
-    #[must_use]
     pub fn new(points: &[(f64, f64)], interpolation: Interpolation) -> Option<Self> {
         let &(first_s, first) = points.first()?;
         if !points.iter().all(|(t, y)| t.is_finite() && y.is_finite()) {
@@ -94,13 +93,11 @@ impl Points {
     }
 
     /// Number of steps in both directions.
-    #[must_use]
     pub fn step_count(&self) -> u64 {
         self.end_counts.last().copied().unwrap_or(0)
     }
 
     /// The maximum distance from the start, in steps.
-    #[must_use]
     pub fn max_distance(&self) -> f64 {
         self.pieces.iter().fold(0.0, |max, piece| greater(max, libm::fabs(piece.to)))
     }
@@ -112,7 +109,6 @@ impl Points {
     }
 
     /// The piece (from 0) with the maximum speed, and that speed in steps/s.
-    #[must_use]
     pub fn fastest_piece(&self) -> (usize, f64) {
         let speeds = self.pieces.iter().map(peak_speed).enumerate();
         speeds.fold((0, 0.0), |max, each| if each.1 > max.1 { each } else { max })

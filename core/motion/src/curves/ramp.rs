@@ -28,7 +28,6 @@ const MAX_STEPS: u32 = 100;
 /// without ramps.
 ///
 /// The paper has t_s <= t_i - n/f_s; for other areas it is t_s <= (t_i - n/f_s)/(2*(1 - area)).
-#[must_use]
 pub fn longest_ramp_s(steps: u64, duration_s: f64, speed: f64, area: f64) -> Option<f64> {
     let ramp_s = (duration_s - steps as f64 / speed) / (2.0 * (1.0 - area));
     (ramp_s >= 0.0).then_some(ramp_s)
@@ -67,7 +66,6 @@ pub struct Exponential {
 
 impl Ramp {
     /// A sigmoid from -`range` to +`range` > 0.
-    #[must_use]
     pub fn sigmoid(range: f64) -> Self {
         let half = range / 2.0;
         let low = 1.0 / (1.0 + libm::exp(range));
@@ -75,13 +73,11 @@ impl Ramp {
     }
 
     /// An exponential of `constants` > 0 time constants.
-    #[must_use]
     pub fn exponential(constants: f64) -> Self {
         Self::Exponential(Exponential { constants, part: -libm::expm1(-constants) })
     }
 
     /// A = G(1) >= 1/2: the travel of the ramp in units of its time at top speed.
-    #[must_use]
     pub fn area(&self) -> f64 {
         match self {
             Self::Exponential(curve) => curve.travel(1.0),
@@ -90,7 +86,6 @@ impl Ramp {
     }
 
     /// g(x), in units of the top speed.
-    #[must_use]
     pub fn speed(&self, x: f64) -> f64 {
         match self {
             Self::Sigmoid(curve) => curve.speed(x),
@@ -101,7 +96,6 @@ impl Ramp {
     }
 
     /// G(x), in units of the ramp's time at top speed.
-    #[must_use]
     pub fn travel(&self, x: f64) -> f64 {
         match self {
             Self::Sigmoid(curve) => curve.travel(x),
@@ -112,7 +106,6 @@ impl Ramp {
     }
 
     /// g'(x); times f_max/t_s it is the acceleration.
-    #[must_use]
     pub fn slope(&self, x: f64) -> f64 {
         match self {
             Self::Sigmoid(curve) => curve.slope(x),
@@ -125,7 +118,6 @@ impl Ramp {
     }
 
     /// Maximum g'.
-    #[must_use]
     pub fn max_slope(&self) -> f64 {
         match self {
             Self::Sigmoid(_) | Self::Bezier => self.slope(0.5),
@@ -134,7 +126,6 @@ impl Ramp {
     }
 
     /// Maximum |g''|; times f_max/t_s^2 it is the jerk.
-    #[must_use]
     pub fn max_curvature(&self) -> f64 {
         match self {
             Self::Sigmoid(curve) => curve.max_curvature(),
@@ -153,7 +144,6 @@ impl Ramp {
     }
 
     /// The x of 0..=1 with G(x) = `travel`, which is in 0..=[`Ramp::area`].
-    #[must_use]
     pub fn at_travel(&self, travel: f64) -> f64 {
         let guess = match self {
             _ if travel <= 0.0 => return 0.0,

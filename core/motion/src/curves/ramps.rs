@@ -31,7 +31,6 @@ pub struct Ramps {
 
 impl Ramps {
     /// `steps` (left negative) in `duration_s` > 0 with ramps of `ramp_s`, from 0 to half of it.
-    #[must_use]
     pub fn new(steps: i64, duration_s: f64, ramp_s: f64, ramp: Ramp) -> Self {
         debug_assert!((0.0..=duration_s / 2.0).contains(&ramp_s), "ramps of {ramp_s} s in {duration_s} s");
         let area = ramp.area();
@@ -40,19 +39,16 @@ impl Ramps {
     }
 
     /// The same move with another ramp time in s, from 0 to half of its duration.
-    #[must_use]
     pub fn with_ramp_s(&self, ramp_s: f64) -> Self {
         Self::new(self.halves.steps, self.halves.duration_s, ramp_s, self.ramp)
     }
 
     /// f_max in steps/s, the plateau speed.
-    #[must_use]
     pub fn top_speed(&self) -> f64 {
         self.top_speed
     }
 
     /// The longest ramp in s with a top speed of at most `speed` steps/s ([`longest_ramp_s`]).
-    #[must_use]
     pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
         longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, self.area)
     }

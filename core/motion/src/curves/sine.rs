@@ -30,7 +30,6 @@ pub struct Sine {
 impl Sine {
     /// `periods` whole periods of `period_s` > 0 between `amplitude` steps (not 0) on both sides of the middle; a negative
     /// amplitude starts at the left extreme.
-    #[must_use]
     pub fn new(amplitude: i64, period_s: f64, periods: u32) -> Self {
         Self { oscillation: Oscillation::new(amplitude, period_s, periods) }
     }

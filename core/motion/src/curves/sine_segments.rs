@@ -65,7 +65,6 @@ pub struct SineSegments {
 impl SineSegments {
     /// `periods` whole periods of `period_s` > 0 between `amplitude` steps on both sides of the middle; a negative
     /// amplitude starts at the left extreme. `d1` is the maximum deviation in units of the amplitude.
-    #[must_use]
     pub fn new(amplitude: i64, period_s: f64, periods: u32, d1: f64) -> Self {
         let amplitude_steps = amplitude.unsigned_abs() as f64;
         let vertex = |point| round_half_up(amplitude_steps * cosine_at(point)).unsigned_abs();
@@ -98,13 +97,11 @@ impl SineSegments {
     }
 
     /// The segments of the first quarter, from the extreme to the middle.
-    #[must_use]
     pub fn segments(&self) -> &[Segment] {
         &self.segments
     }
 
     /// Memory of the segments of a quarter, and of a table of intervals.
-    #[must_use]
     pub fn memory(&self) -> Memory {
         let has_long_segments = self.segments.iter().any(|segment| segment.steps > u16::MAX.into());
         let each = if has_long_segments { 8 } else { 6 };
@@ -142,7 +139,6 @@ impl SineSegments {
     }
 
     /// Time per point of the angle in s.
-    #[must_use]
     pub fn point_s(&self) -> f64 {
         self.oscillation.period_s / f64::from(POINTS)
     }

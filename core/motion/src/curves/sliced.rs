@@ -104,26 +104,22 @@ impl Sliced {
     }
 
     /// The curve without slices.
-    #[must_use]
     pub fn exact(&self) -> &Cosine {
         &self.exact
     }
 
     /// n', the steps of the compensated curve.
-    #[must_use]
     pub fn compensated_steps(&self) -> u64 {
         self.compensated_steps
     }
 
     /// Maximum rate of a slice in steps/s, floor(f*TS)/TS. It is computed from steps and length, because the difference of two
     /// late times has lost digits.
-    #[must_use]
     pub fn top_rate(&self) -> f64 {
         self.slices.top_rate
     }
 
     /// Number of slices, without those that were removed from the plateau.
-    #[must_use]
     pub fn slice_count(&self) -> u64 {
         self.starts_s().len().saturating_sub(1) as u64
     }
@@ -134,7 +130,6 @@ impl Sliced {
     }
 
     /// How much earlier or later the move ends than requested.
-    #[must_use]
     pub fn time_error(&self) -> TimeError {
         let requested_s = self.exact.duration_s();
         let end_s = self.duration_s() - requested_s;

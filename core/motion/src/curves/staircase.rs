@@ -71,38 +71,32 @@ impl Staircase {
     }
 
     /// The whole table, including unused rows.
-    #[must_use]
     pub fn table(&self) -> &StaircaseTable {
         &self.table
     }
 
     /// Rows of each ramp; 0 for a constant rate.
-    #[must_use]
     pub fn ramp_rows(&self) -> u64 {
         self.starts_s.len().saturating_sub(1) as u64
     }
 
     /// Steps of each ramp, the paper's S.
     /// Duration of each ramp in s.
-    #[must_use]
     pub fn ramp_steps(&self) -> u64 {
         self.ramp_steps
     }
 
     /// Duration of each ramp in s.
-    #[must_use]
     pub fn ramp_s(&self) -> f64 {
         self.starts_s.last().copied().unwrap_or(0.0)
     }
 
     /// Steps between the ramps.
-    #[must_use]
     pub fn plateau_steps(&self) -> u64 {
         self.count() - 2 * self.ramp_steps
     }
 
     /// Rate between the ramps in whole steps/s; `None` without a step there.
-    #[must_use]
     pub fn plateau_rate(&self) -> Option<u64> {
         (self.plateau_steps() > 0).then_some(self.plateau_rate)
     }
@@ -125,7 +119,6 @@ impl Staircase {
     }
 
     /// Time in s of step `k` (from 1; 0 is the start, from the last step on the end).
-    #[must_use]
     pub fn step_s(&self, k: u64) -> f64 {
         let left = self.count().saturating_sub(k);
         if k <= self.ramp_steps {

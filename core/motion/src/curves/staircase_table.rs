@@ -26,13 +26,11 @@ pub struct StaircaseTable {
 impl StaircaseTable {
     /// From `start_speed` >= 1/2 up to the first rate above `max_speed` >= `start_speed`, with `acceleration` > 0, in steps
     /// and s.
-    #[must_use]
     pub fn new(start_speed: f64, max_speed: f64, acceleration: f64) -> Self {
         Self { start_speed, max_speed, acceleration }
     }
 
     /// Rate of row `n` (from 1) in whole steps/s, not decreasing.
-    #[must_use]
     pub fn rate(&self, n: u64) -> u64 {
         let steps = Self::steps_after(n.saturating_sub(1));
         quick_rate(self.start_speed, self.acceleration, steps).unwrap_or_else(|| {
@@ -41,32 +39,27 @@ impl StaircaseTable {
     }
 
     /// Steps of row `n` (from 1).
-    #[must_use]
     pub fn steps_in(n: u64) -> u64 {
         FIRST_STEPS * (1 + n.saturating_sub(1) / EQUAL_ROWS)
     }
 
     /// Total steps of the rows 1 to `n`.
-    #[must_use]
     pub fn steps_after(n: u64) -> u64 {
         let (blocks, rows_left) = (n / EQUAL_ROWS, n % EQUAL_ROWS);
         FIRST_STEPS * (EQUAL_ROWS * blocks * (blocks + 1) / 2 + rows_left * (blocks + 1))
     }
 
     /// Number of rows before the rate is at least `rate`: the rows of a ramp to it.
-    #[must_use]
     pub fn rows_to(&self, rate: u64) -> u64 {
         first_from_zero(|rows| self.rate(rows + 1) >= rate)
     }
 
     /// Maximum number of rows that fit into `steps` up and down.
-    #[must_use]
     pub fn rows_that_fit(steps: u64) -> u64 {
         first_from_zero(|rows| 2 * Self::steps_after(rows + 1) > steps)
     }
 
     /// Number of rows, up to the one before the first rate above the maximum speed.
-    #[must_use]
     pub fn rows(&self) -> u64 {
         first_from_zero(|rows| rows > 0 && self.rate(rows + 1) as f64 > self.max_speed)
     }

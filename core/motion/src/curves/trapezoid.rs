@@ -40,7 +40,6 @@ struct Half<N> {
     acceleration: N,
     /// The top speed, or the maximum speed of a triangle.
     peak_speed: N,
-    /// At most half of the steps.
     ramp_steps: N,
     ramp_s: N,
     duration_s: N,
@@ -75,7 +74,6 @@ impl<N: Number> Half<N> {
 impl Trapezoid {
     /// `steps` (left negative) from `start_speed` >= 0 to `top_speed` >= `start_speed` and back with `acceleration` > 0,
     /// in steps and s. The top speed is above 0.
-    #[must_use]
     pub fn new(steps: i64, start_speed: f64, top_speed: f64, acceleration: f64) -> Self {
         let [start_speed, top_speed, acceleration] =
             [start_speed, top_speed, acceleration].map(Double::decimal);
@@ -91,20 +89,17 @@ impl Trapezoid {
     }
 
     /// Maximum speed of the move in steps/s.
-    #[must_use]
     pub fn peak_speed(&self) -> f64 {
         self.half.peak_speed
     }
 
     /// Duration of each ramp in s.
-    #[must_use]
     pub fn ramp_s(&self) -> f64 {
         self.half.ramp_s
     }
 
     /// Steps of each ramp, not rounded.
     /// Duration of each ramp in s.
-    #[must_use]
     pub fn ramp_steps(&self) -> f64 {
         self.half.ramp_steps
     }

@@ -69,19 +69,16 @@ impl TrapezoidTable {
     }
 
     /// The whole table, including unused rows.
-    #[must_use]
     pub fn table(&self) -> &AccelerationTable {
         &self.table
     }
 
     /// Rows of the whole table.
-    #[must_use]
     pub fn rows(&self) -> u64 {
         self.table.top().saturating_add(1)
     }
 
     /// Rows of the table that this move uses.
-    #[must_use]
     pub fn used_rows(&self) -> u64 {
         self.ramp + 1
     }
@@ -102,7 +99,6 @@ impl TrapezoidTable {
     }
 
     /// Timer ticks to step `k` (from 1; 0 is the start, from the last step on the end).
-    #[must_use]
     pub fn step_ticks(&self, k: u64) -> u64 {
         let count = self.count();
         let k = if k > count { count } else { k };

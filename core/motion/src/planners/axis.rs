@@ -15,7 +15,6 @@ use alloc::vec::Vec;
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedMove {
     pub start_s: f64,
-    /// Position at the start.
     pub start_steps: i64,
     pub profile: Profile,
 }
@@ -45,26 +44,22 @@ impl AxisPlan {
     }
 
     /// The moves, at least one.
-    #[must_use]
     pub fn moves(&self) -> &[PlannedMove] {
         debug_assert!(!self.moves.is_empty(), "an axis without moves was accepted");
         &self.moves
     }
 
     /// Duration of all moves in s.
-    #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.duration_s
     }
 
     /// Position after all moves, in steps.
-    #[must_use]
     pub fn steps(&self) -> i64 {
         self.steps
     }
 
     /// Number of steps in both directions.
-    #[must_use]
     pub fn step_count(&self) -> u64 {
         self.moves.iter().fold(0, |sum: u64, planned| sum.saturating_add(planned.profile.step_count()))
     }
@@ -91,7 +86,6 @@ impl AxisPlan {
     }
 
     /// Position at `t` s in steps.
-    #[must_use]
     pub fn position(&self, t: f64) -> f64 {
         if t >= self.duration_s {
             return self.steps as f64;
@@ -103,7 +97,6 @@ impl AxisPlan {
     /// at `t` counts if it goes to the right, and not yet if it goes to the left.
     ///
     /// A move starts at a whole step, so only its own part is rounded.
-    #[must_use]
     pub fn steps_due(&self, t: f64) -> i64 {
         // At the end of a move its last step may not be due yet.
         let ended = self.moves.partition_point(|planned| planned.start_s + planned.profile.duration_s() < t);
@@ -124,13 +117,11 @@ impl AxisPlan {
     }
 
     /// Speed at `t` s in steps/s; 0 outside the motion.
-    #[must_use]
     pub fn speed(&self, t: f64) -> f64 {
         self.value_while_moving(t, |profile, t| profile.speed(t))
     }
 
     /// Acceleration at `t` s in steps/s^2; 0 outside the motion and where the speed jumps.
-    #[must_use]
     pub fn acceleration(&self, t: f64) -> f64 {
         self.value_while_moving(t, |profile, t| profile.acceleration(t))
     }
@@ -143,7 +134,6 @@ impl AxisPlan {
     }
 
     /// Maximum magnitudes of the axis, with the jumps at and between the ends of moves.
-    #[must_use]
     pub fn peaks(&self) -> Peaks {
         let (mut peaks, mut last_speed, mut last_acceleration) = (Peaks::default(), 0.0, 0.0);
         let jumps = |speed: f64, acceleration: f64| Peaks {

@@ -41,7 +41,6 @@ struct CurrentMove<'p> {
 
 impl AxisPlan {
     /// Returns a counter of the steps due by cycles at `clock_hz`.
-    #[must_use]
     pub fn due_by(&self, clock_hz: u32) -> DueBy<'_> {
         let (clock_hz, moves) = (clock_hz.max(1), self.moves());
         let current = moves.first().map(|planned| CurrentMove::new(planned, CycleTime::default(), clock_hz));

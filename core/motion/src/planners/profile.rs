@@ -90,13 +90,11 @@ impl Profile {
     }
 
     /// Period in s and number of periods of an oscillation; `None` for other moves.
-    #[must_use]
     pub fn repeats(&self) -> Option<(f64, u32)> {
         self.oscillation().map(|oscillation| (oscillation.period_s, oscillation.periods))
     }
 
     /// Number of steps in both directions.
-    #[must_use]
     pub fn step_count(&self) -> u64 {
         match (self, self.oscillation()) {
             (_, Some(oscillation)) => oscillation.step_count(),
@@ -115,7 +113,6 @@ impl Profile {
     }
 
     /// The cycle of step `k` (from 1) after the move's start, at `clock_hz`; `None` after the last step.
-    #[must_use]
     pub fn step_cycle(&self, k: u64, clock_hz: u32) -> Option<u64> {
         let steps = MoveSteps::new(self.schedule(), CycleTime::default(), clock_hz);
         steps.step_after(k.checked_sub(1)?).map(|step| step.cycle)

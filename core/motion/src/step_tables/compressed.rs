@@ -57,7 +57,6 @@ pub struct Tolerance {
 
 impl Tolerance {
     /// A number of cycles to both sides, independent of the intervals.
-    #[must_use]
     pub const fn of(cycles: Cycles) -> Self {
         Self { cycles, interval_part: None, side: Side::Both }
     }

@@ -41,7 +41,6 @@ impl EntryFormat {
 
     /// A format of your own: bits of a cycle's fraction, and of interval, count and add. `None` unless the fraction has
     /// at most 16 bits, and the numbers have whole bytes: up to 64, 32 and 64 bits.
-    #[must_use]
     pub const fn new(name: &'static str, fraction_bits: u32, widths: [u32; 3]) -> Option<Self> {
         let [interval_bits, count_bits, add_bits] = widths;
         let format = Self { name, fraction_bits, interval_bits, count_bits, add_bits };
@@ -60,43 +59,36 @@ impl EntryFormat {
     }
 
     /// Bits of a cycle's fraction in interval and add, 0 to 16.
-    #[must_use]
     pub const fn fraction_bits(self) -> u32 {
         self.fraction_bits
     }
 
     /// Bits of interval (unsigned), count (unsigned) and add (signed).
-    #[must_use]
     pub const fn widths(self) -> [u32; 3] {
         [self.interval_bits, self.count_bits, self.add_bits]
     }
 
     /// Bytes per entry.
-    #[must_use]
     pub const fn bytes(self) -> u64 {
         ((self.interval_bits + self.count_bits + self.add_bits) / 8) as u64
     }
 
     /// In units.
-    #[must_use]
     pub const fn max_interval(self) -> u64 {
         u64::MAX >> (64 - self.interval_bits)
     }
 
     /// Maximum steps per entry.
-    #[must_use]
     pub const fn max_count(self) -> u32 {
         u32::MAX >> (32 - self.count_bits)
     }
 
     /// In units.
-    #[must_use]
     pub const fn min_add(self) -> i64 {
         i64::MIN >> (64 - self.add_bits)
     }
 
     /// In units.
-    #[must_use]
     pub const fn max_add(self) -> i64 {
         i64::MAX >> (64 - self.add_bits)
     }

@@ -369,7 +369,6 @@ impl Section {
         Some(entries)
     }
 
-    /// The start step and time of an entry from the layer to a step's time, and the entry.
     fn entry_to(&self, layer: &Layer, step: usize, time: i64) -> Option<(usize, i64, FoundEntry)> {
         let target = StepWindow { low: time, high: time, ..self.windows[step] };
         let earliest = step.saturating_sub(self.format.max_count() as usize);

@@ -70,13 +70,11 @@ pub(super) struct LookAhead {
 /// A search for the longest entry.
 #[derive(Clone, Copy)]
 struct Search {
-    /// The longest entry that passed a replay.
     accepted: LongestEntry,
     /// The longest entry whose samples have passed, and the shortest one that was refused.
     sampled: usize,
     refused: usize,
     add: Option<i64>,
-    /// The next length to test.
     next: usize,
 }
 

@@ -169,7 +169,6 @@ mod tests {
         plain.collect()
     }
 
-    /// Cycles of the steps, as the segments say.
     fn cycles(segments: &[Plain]) -> Vec<u64> {
         let mut cycles = Vec::new();
         let mut now = 0;

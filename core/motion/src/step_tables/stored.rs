@@ -45,7 +45,6 @@ impl Form {
 /// Stored step times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stored {
-    /// The entries as segments.
     pub list: SegmentList,
     pub format: EntryFormat,
     pub entries: Vec<Entry>,
@@ -58,20 +57,17 @@ pub struct Stored {
 
 impl Stored {
     /// Bytes of all entries.
-    #[must_use]
     pub fn bytes(&self) -> u64 {
         self.entries.len() as u64 * self.format.bytes()
     }
 
     /// Number of entries without steps: changes of direction and waits, which are no `queue_step` of Klipper.
-    #[must_use]
     pub fn turns(&self) -> usize {
         self.entries.iter().filter(|entry| entry.count == 0).count()
     }
 
     /// Bytes on the line with Klipper's protocol, in blocks of up to 64 bytes; `None` for a format whose numbers its
     /// `queue_step` does not accept.
-    #[must_use]
     pub fn wire_bytes(&self) -> Option<u64> {
         wire_bytes(self.format, &self.entries)
     }

@@ -29,20 +29,17 @@ pub struct Ticks {
 
 impl Ticks {
     /// Number of channels, which is also the bytes per tick.
-    #[must_use]
     pub fn channels(&self) -> u8 {
         self.channels
     }
 
     /// Number of ticks.
-    #[must_use]
     #[allow(clippy::len_without_is_empty, reason = "there is always a tick")]
     pub fn len(&self) -> usize {
         self.bytes.len() / usize::from(self.channels.max(1))
     }
 
     /// The bytes of all ticks in the order of their times.
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -129,19 +126,16 @@ pub struct TickClock {
 
 impl TickClock {
     /// Ticks of `tick_cycles` at `clock_hz`; 0 of either counts as 1.
-    #[must_use]
     pub fn new(tick_cycles: u64, clock_hz: u32) -> Self {
         Self { tick_cycles: tick_cycles.max(1), clock_hz: clock_hz.max(1) }
     }
 
     /// Duration of a tick in cycles.
-    #[must_use]
     pub fn tick_cycles(&self) -> u64 {
         self.tick_cycles
     }
 
     /// A cycle from the motion's start in s.
-    #[must_use]
     pub fn seconds(&self, cycle: u64) -> f64 {
         cycle as f64 / f64::from(self.clock_hz)
     }
@@ -151,19 +145,16 @@ impl TickClock {
     }
 
     /// End of tick `tick` (from 0) in s.
-    #[must_use]
     pub fn end_s(&self, tick: u64) -> f64 {
         self.seconds(self.end(tick))
     }
 
     /// Steps due by the end of tick `tick` (from 0).
-    #[must_use]
     pub fn due_by_end(&self, plan: &AxisPlan, tick: u64) -> i64 {
         plan.due_by(self.clock_hz).steps(self.end(tick))
     }
 
     /// Minimum number of ticks, at least one, whose end is not before `duration_s`.
-    #[must_use]
     pub fn ticks_until(&self, duration_s: f64) -> u64 {
         let tick_s = self.end_s(0);
         let mut ticks = libm::ceil(duration_s / tick_s) as u64;

@@ -6,7 +6,6 @@ use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 /// Timing errors of steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TimingError {
-    /// Number of steps.
     pub steps: u64,
     /// Maximum error in cycles, early or late.
     pub max_cycles: u64,
@@ -22,14 +21,12 @@ impl TimingError {
     }
 
     /// Root mean square in cycles; 0 without steps.
-    #[must_use]
     pub fn rms(&self) -> f64 {
         if self.steps == 0 { 0.0 } else { libm::sqrt(self.squares as f64 / self.steps as f64) }
     }
 
     /// The timing errors of a list whose steps are due at `due`, in cycles from the list's start; `None` if the number of steps
     /// or a direction differs.
-    #[must_use]
     pub fn of(list: &SegmentList, due: impl IntoIterator<Item = ScheduledStep>) -> Option<Self> {
         let (mut error, mut time, mut due) = (Self::default(), 0_u64, due.into_iter());
         for segment in &list.segments {

@@ -114,7 +114,6 @@ impl Exact {
 }
 
 impl Double {
-    /// The shortest decimal of a finite number.
     pub(crate) fn decimal(number: f64) -> Self {
         Exact::of(number).double()
     }
@@ -174,7 +173,6 @@ mod tests {
         assert_eq!(Exact::difference(20.45, 46.95).rounded(), -26, "-26.5, half up");
     }
 
-    /// Digits, exponent and number of a random decimal.
     fn random_decimal(noise: &mut Xoshiro256StarStar, signed: bool) -> (BigInt, i32, f64) {
         let bits = 1 + noise.next_u64() % 50;
         let digits = 1 + (noise.next_u64() >> (64 - bits)) as i64;

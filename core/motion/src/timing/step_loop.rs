@@ -18,9 +18,7 @@ const MAX_START_ERROR: f64 = 4.0 * f64::EPSILON;
 /// A step and its cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScheduledStep {
-    /// From the start of the motion.
     pub cycle: u64,
-    /// Direction of the step.
     pub right: bool,
 }
 

@@ -59,7 +59,6 @@ pub struct Device {
     /// The next cycle to run.
     now: Instant,
     last_active: Instant,
-    /// The line as others drive it.
     line: bool,
     /// The line as the receiver samples it: high while this controller drives it.
     rx: bool,

@@ -34,7 +34,6 @@ pub(super) struct Change {
 pub(super) struct Plan {
     config: Config,
     pulse: PulseTimes,
-    /// DIR of all channels to the right.
     all_right: Lines,
     commands: Tick,
     /// Invariant: offsets rise and stay within the tick; no two in a row have the same lines.

@@ -23,7 +23,6 @@ const _: () = {
     assert!(State::Stopped as u32 == map::status::STATE_STOPPED);
 };
 
-/// Index within an array of registers.
 fn index(register: &map::table::Register, offset: u32) -> Option<usize> {
     let within = register.offset <= offset && offset < register.end() && offset.is_multiple_of(4);
     within.then_some((offset.wrapping_sub(register.offset) / 4) as usize)

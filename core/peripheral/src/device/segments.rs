@@ -44,7 +44,6 @@ pub struct SegmentEngine {
 
 #[derive(Clone, Copy, Debug)]
 struct Channel {
-    /// Segments begun.
     begun: usize,
     /// Steps of the current segment that are not scheduled yet.
     remaining: u32,

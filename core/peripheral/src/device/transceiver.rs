@@ -29,7 +29,6 @@ pub(super) struct Transceiver {
 
 #[derive(Clone, Debug)]
 struct Reply {
-    /// Rise and fall of DE.
     rise: Instant,
     fall: Instant,
     sender: Sender,

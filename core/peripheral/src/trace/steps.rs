@@ -6,7 +6,6 @@ use alloc::vec::Vec;
 /// One step of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// Cycle in which STEP rises.
     pub cycle: u64,
     /// Position after it, in steps from the start of the trace.
     pub position: i32,

@@ -18,7 +18,6 @@ use cobs::{DecodeResult, DecoderState};
 /// The role of a byte in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CobsByte {
-    /// The first code of a frame.
     First,
     /// A code without a zero, or the zero of an empty run.
     Overhead,

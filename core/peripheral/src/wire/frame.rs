@@ -214,7 +214,6 @@ impl<'a> Ticks<'a> {
 /// What a byte completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Deframed<'a> {
-    /// A frame with a valid CRC.
     Frame(Frame<'a>),
     /// Invalid COBS, or fewer than [`MIN_DECODED`] bytes.
     Short,

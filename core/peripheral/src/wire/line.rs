@@ -50,7 +50,6 @@ pub struct Line {
     sender: Sender,
     /// Invariant: disjoint and rising.
     forced: Rc<Vec<ForcedLevel>>,
-    /// Number of forced levels that have ended.
     ended: usize,
     /// The level forced in the current cycle.
     force: Option<bool>,

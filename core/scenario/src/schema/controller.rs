@@ -36,7 +36,6 @@ settings! {
 
 impl Controller {
     /// Whether it has axes or packets.
-    #[must_use]
     pub fn is_busy(&self) -> bool {
         !self.axes.is_empty() || !self.packets.is_empty()
     }

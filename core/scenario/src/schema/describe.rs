@@ -14,7 +14,6 @@ use alloc::vec::Vec;
 use serde_json::{Map, Value, json};
 
 /// The schema as JSON text.
-#[must_use]
 pub fn describe() -> String {
     let mut groups = Map::new();
     let root = type_of(&Scenario::TYPE, &mut groups);

@@ -159,7 +159,6 @@ settings! {
 
 impl Line {
     /// The line of the first controller.
-    #[must_use]
     pub const fn serial(&self) -> SerialLine {
         SerialLine {
             baud: self.baud,

@@ -11,7 +11,6 @@ use core::fmt::Write as _;
 const EXAMPLES: &str = include_str!("examples.md");
 
 /// The documentation of the format, in Markdown.
-#[must_use]
 pub fn markdown() -> String {
     let mut out = format!("# The scenario format, version {VERSION}\n\n{EXAMPLES}\n## Fields\n\n");
     let mut done = Vec::new();

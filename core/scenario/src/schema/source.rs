@@ -110,19 +110,16 @@ settings! {
 
 impl Source {
     /// Whether the host sends ticks.
-    #[must_use]
     pub const fn is_ticks(&self) -> bool {
         !matches!(self, Self::Line(_)) && !self.runs_alone()
     }
 
     /// Whether segments run it instead of ticks.
-    #[must_use]
     pub const fn runs_segments(&self) -> bool {
         matches!(self, Self::Segments(_) | Self::Motion(Motion { engine: MotionEngine::Segments, .. }))
     }
 
     /// Whether nothing is sent: segments or stand-alone controllers run it.
-    #[must_use]
     pub const fn runs_alone(&self) -> bool {
         if let Self::Standalone(_) = self {
             return true;
@@ -133,7 +130,6 @@ impl Source {
 
 impl LineScript {
     /// The script as the host's schedule (A9).
-    #[must_use]
     pub fn schedule(&self) -> Schedule {
         let mut schedule = Schedule::default();
         for send in &self.sends {
@@ -145,7 +141,6 @@ impl LineScript {
 
 impl ScriptedSend {
     /// The bytes on the line.
-    #[must_use]
     pub fn wire(&self) -> Vec<u8> {
         self.frame.as_ref().map_or_else(|| self.bytes.0.clone(), |Hex(content)| encode_frame(content))
     }

@@ -81,13 +81,11 @@ settings! {
 
 impl Direction {
     /// The direction of a level of DIR.
-    #[must_use]
     pub const fn of_dir(is_high: bool) -> Self {
         if is_high { Self::Positive } else { Self::Negative }
     }
 
     /// Whether DIR is high.
-    #[must_use]
     pub const fn is_positive(self) -> bool {
         matches!(self, Self::Positive)
     }

@@ -292,7 +292,6 @@ impl Field {
     }
 
     /// The documentation as one line.
-    #[must_use]
     pub fn text(&self) -> &'static str {
         self.doc.trim()
     }

@@ -5,7 +5,6 @@ use stepscope_scenario::{Glitch, Hex, LineScript, Noise, Scenario, ScriptedSend,
 
 /// The scenario with the sent bytes and forced levels as its source, or with its segment lists. Stand-alone controllers
 /// keep their source. The result may have more forced levels than are valid.
-#[must_use]
 pub fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> Scenario {
     if run.stand_alone().is_some() {
         return scenario;
@@ -33,7 +32,6 @@ pub fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> S
 }
 
 /// A scenario with a script as its source, without noise, whose effect is in the bytes.
-#[must_use]
 pub fn replayed(mut scenario: Scenario, script: LineScript) -> Scenario {
     scenario.source = Source::Line(script);
     scenario.line.noise = Noise::default();

@@ -64,7 +64,6 @@ struct StretchesOf {
 
 impl SessionTimes {
     /// A session that began `started_unix_ms` after 1970; `pace` is `max` without pacing; rows are stored only if `keeps`.
-    #[must_use]
     pub const fn new(started_unix_ms: u64, pace: String, lag_ms: u64, keeps: bool) -> Self {
         Self { started_unix_ms, pace, lag_ms, keeps, chunks: Vec::new(), replies: Vec::new(), left_out: 0 }
     }

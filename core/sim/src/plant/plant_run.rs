@@ -25,7 +25,6 @@ pub struct PlantRun<S, O> {
 
 impl<S: Sink, O: Observer> PlantRun<S, O> {
     /// Starts a run with a sink and an observer per controller, in the order of the scenario; `None` without a plant.
-    #[must_use]
     pub fn new(experiment: &Experiment, parts: Vec<(S, O)>) -> Option<Self> {
         experiment.plants()?;
         let (sinks, observers) = parts.into_iter().unzip();
@@ -47,7 +46,6 @@ impl<S: Sink, O: Observer> PlantRun<S, O> {
     }
 
     /// The sinks and observers in the order of the scenario.
-    #[must_use]
     pub fn into_parts(self) -> Vec<(S, O)> {
         self.sinks.into_iter().zip(self.observers).collect()
     }

@@ -19,7 +19,6 @@ const CURVE_SECONDS: u64 = 10;
 const CURVE_POINTS: usize = 120;
 const CURVES: usize = 4;
 
-/// State of a controller.
 #[derive(Serialize)]
 struct ControllerState {
     state: Option<&'static str>,
@@ -32,11 +31,9 @@ struct ControllerState {
     curves: Vec<Vec<i32>>,
 }
 
-/// State of a session.
 #[derive(Serialize)]
 struct SessionState {
     seconds: f64,
-    /// Start of the curves.
     curves_from: f64,
     received: u64,
     replies: u64,
@@ -48,7 +45,6 @@ struct SessionState {
     controllers: Vec<ControllerState>,
 }
 
-/// A session as a scenario.
 #[derive(Serialize)]
 struct Recorded {
     scenario: String,
@@ -96,7 +92,6 @@ impl LiveDevice {
     }
 
     /// Bit rate.
-    #[must_use]
     pub fn baud(&self) -> u32 {
         self.session.experiment().baud()
     }
@@ -142,7 +137,6 @@ impl LiveDevice {
     }
 
     /// Time until the next event without received bytes, in ms.
-    #[must_use]
     pub fn wait(&self) -> f64 {
         let due = self.session.deadline();
         let cycles = Cycles(due.0.saturating_sub(self.session.now().0));
@@ -193,7 +187,6 @@ impl LiveDevice {
     }
 
     /// The content of `NAME.session.json`.
-    #[must_use]
     pub fn times(&self) -> String {
         let Self { session, clock, times, .. } = self;
         times.to_json(clock, &session.recording(), session.records_all())

@@ -23,7 +23,6 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// One exchange, as a row of the page.
 #[derive(Serialize)]
 struct Exchange {
     /// Time of the reply or of the timeout.
@@ -37,11 +36,9 @@ struct Exchange {
     /// From the end of the frame to the end of the reply.
     delay_ms: Option<f64>,
     model_ms: Option<f64>,
-    /// Difference from the model.
     difference: Option<String>,
 }
 
-/// Progress.
 #[derive(Serialize)]
 struct State {
     text: String,
@@ -56,7 +53,6 @@ struct State {
 #[derive(Serialize)]
 struct End {
     state: &'static str,
-    /// Since opening.
     ticks_done: Option<u32>,
     /// Since opening; null if unknown.
     went: Option<Vec<i32>>,
@@ -72,16 +68,13 @@ struct EndPair {
     model: Option<End>,
 }
 
-/// The final report.
 #[derive(Serialize)]
 struct FinalReport {
     text: String,
     verified: bool,
-    /// Why it is not verified.
     why: Option<String>,
     stop_acknowledged: bool,
     ends: Vec<EndPair>,
-    /// The first difference from the model.
     difference: Option<String>,
 }
 
@@ -147,13 +140,11 @@ impl LiveHost {
     }
 
     /// Bit rate.
-    #[must_use]
     pub fn baud(&self) -> u32 {
         self.experiment.baud()
     }
 
     /// Maximum delay of the host before a filled queue is empty, in ms.
-    #[must_use]
     pub fn margin_ms(&self) -> f64 {
         let margin = |job: &Job| {
             let left = job.queue_depth.saturating_sub(job.ticks_per_frame(&self.settings));
@@ -163,7 +154,6 @@ impl LiveHost {
     }
 
     /// Whether it has ended.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.host.is_over()
     }
@@ -229,7 +219,6 @@ impl LiveHost {
     }
 
     /// Time until the next event without received bytes, in ms.
-    #[must_use]
     pub fn wait(&mut self, ms: f64) -> f64 {
         let due = self.host.deadline();
         if due == Instant::NEVER {

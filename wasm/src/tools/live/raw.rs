@@ -11,7 +11,6 @@ use wasm_bindgen::prelude::*;
 /// Covers the delays of a page (LIVE H3).
 const LEAD_NS: u64 = 200_000_000;
 
-/// Progress.
 #[derive(Serialize)]
 struct State {
     text: String,
@@ -64,25 +63,21 @@ impl LiveRawHost {
     }
 
     /// Bit rate.
-    #[must_use]
     pub fn baud(&self) -> u32 {
         self.baud
     }
 
     /// Maximum delay of the page before the queue is empty, in ms.
-    #[must_use]
     pub fn margin_ms(&self) -> f64 {
         self.host.slack_ns() as f64 / 1e6
     }
 
     /// Whether everything is sent.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.host.due_ns().is_none()
     }
 
     /// The packet to write now, if any.
-    #[must_use]
     pub fn packet(&self, ms: f64) -> Option<Vec<u8>> {
         self.host.packet(nanos(ms)).map(<[u8]>::to_vec)
     }
@@ -93,7 +88,6 @@ impl LiveRawHost {
     }
 
     /// Time until the next packet, in ms.
-    #[must_use]
     pub fn wait(&self, ms: f64) -> f64 {
         self.host.due_ns().map_or(f64::INFINITY, |due| due.saturating_sub(nanos(ms)) as f64 / 1e6)
     }

@@ -2,7 +2,6 @@
 
 use serde::Deserialize;
 
-/// Range and labels of one axis.
 #[derive(Deserialize)]
 pub(crate) struct Axis {
     pub(crate) min: f64,
@@ -16,7 +15,6 @@ pub(crate) struct Axis {
     /// Given ticks, for a logarithmic axis.
     #[serde(default)]
     pub(crate) ticks: Vec<f64>,
-    /// Their labels, one per line.
     #[serde(default)]
     pub(crate) labels: String,
 }

@@ -3,11 +3,8 @@
 /// Maximum error of a thinned curve, in pixels.
 const TOLERANCE_PX: f64 = 0.05;
 
-/// The plotting area.
 pub(super) struct Frame {
-    /// Visible range.
     pub(super) x: (f64, f64),
-    /// Visible range.
     pub(super) y: (f64, f64),
     /// Lower left corner, in pixels.
     pub(super) corner: Point,
@@ -18,7 +15,6 @@ pub(super) struct Frame {
 pub(super) type Point = (f64, f64);
 
 impl Frame {
-    /// To pixels, clamped to the edges.
     fn pixels(&self, x: f64, y: f64) -> Point {
         let y = y.clamp(self.y.0, self.y.1);
         (

@@ -4,7 +4,6 @@
 use super::{Axis, Colors, Series, Shape, Spec, svg};
 use std::{env, f64::consts::LOG10_2, fs, path::Path};
 
-/// Colors of a theme.
 struct Theme {
     name: &'static str,
     label: &'static str,

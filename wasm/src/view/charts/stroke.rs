@@ -6,13 +6,11 @@ use std::fmt::Write as _;
 #[cfg(target_arch = "wasm32")]
 use web_sys::CanvasRenderingContext2d;
 
-/// The lines of one series.
 pub(crate) struct Stroke {
     pub(super) lines: Vec<Vec<Point>>,
     pub(super) color: RGBColor,
     /// From 0 (invisible) to 1.
     pub(super) opacity: f64,
-    /// In pixels.
     pub(super) width: f64,
 }
 
@@ -33,7 +31,6 @@ impl Stroke {
         context.stroke();
     }
 
-    /// As SVG elements.
     pub(super) fn svg(&self) -> String {
         let RGBColor(r, g, b) = self.color;
         let mut text = String::new();

@@ -7,7 +7,6 @@ use plotters::prelude::{DrawingBackend, SVGBackend};
 use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
 use std::{error::Error, fmt};
 
-/// A backend of plotters.
 pub(crate) enum Surface<'a> {
     #[cfg(target_arch = "wasm32")]
     Canvas(CanvasBackend),

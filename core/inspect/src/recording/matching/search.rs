@@ -89,7 +89,6 @@ pub(super) struct Search<'a> {
     is_far: bool,
     /// Maximum gaps per start: bounds the time on recordings that are unlike the plan.
     pub(super) max_gaps: usize,
-    /// Gaps tried from the current start.
     tried_gaps: usize,
     pub(super) all_tried_gaps: usize,
 }

@@ -7,7 +7,6 @@ use crate::{Curve, MAX_SPEED, round_half_up, timing::Double};
 use alloc::vec::Vec;
 use core::ops::Range;
 
-/// Tolerance of a quotient that is rounded to an integer.
 pub(super) const ROUNDING_TOLERANCE: f64 = 1e-9;
 /// Rounds of the coarse compensation after which its growth is doubled, repeatedly. The paper's moves need two or three.
 const ROUNDS_PER_DOUBLING: u32 = 1000;

@@ -72,7 +72,6 @@ mod tests {
     };
     use alloc::{string::ToString, vec, vec::Vec};
 
-    /// Unit, points, and their problems.
     type Row<'a> = (PointUnit, Vec<(f64, f64)>, &'a [&'a str]);
 
     #[test]
