@@ -8,6 +8,21 @@ use stepscope_peripheral::signal::{MAX_CHANNELS, Sink};
 use stepscope_peripheral::units::Cycles;
 use stepscope_peripheral::units::Instant;
 
+/// Limits of a part of a run; by default none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunLimits {
+    /// The first cycle that is not run.
+    pub cycle: Instant,
+    /// Maximum number of records of a controller.
+    pub records: u64,
+}
+
+impl Default for RunLimits {
+    fn default() -> Self {
+        Self { cycle: Instant::NEVER, records: u64::MAX }
+    }
+}
+
 #[derive(Clone, Debug)]
 pub(crate) enum Generator {
     Bus,

@@ -37,6 +37,7 @@ mod stand_alone;
 mod summary;
 mod validated;
 
+pub use controllers::RunLimits;
 pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::Experiment;
 pub use faults::{fault_sweep, power_cut};
@@ -45,7 +46,7 @@ pub use hosts::{framed_host, raw_host};
 pub use line::noise;
 pub use live::{lateness, live_trace, session, session_times, twin};
 pub use plant::plant_run;
-pub use run::{Run, RunLimits};
+pub use run::Run;
 pub use stand_alone::{PanelSummary, StandAloneSummary};
 pub use summary::{ControllerSummary, JobSummary, Summary};
 pub use validated::{SelectedAxis, ValidatedScenario, axes_of, bus_of};

@@ -1,6 +1,6 @@
 //! A run in progress.
 
-use crate::controllers::{Controllers, Generator};
+use crate::controllers::{Controllers, Generator, RunLimits};
 use crate::hosts::framed_host::FramedHost;
 use crate::plant::attached::{AttachedPlant, AttachedPlants};
 use alloc::{boxed::Box, vec::Vec};
@@ -191,21 +191,6 @@ impl Run {
             return self.clock_observed::<_, ()>(sinks, &mut []);
         }
         self.controllers.clock(sinks);
-    }
-}
-
-/// Limits of a part of a run; by default none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RunLimits {
-    /// The first cycle that is not run.
-    pub cycle: Instant,
-    /// Maximum number of records of a controller.
-    pub records: u64,
-}
-
-impl Default for RunLimits {
-    fn default() -> Self {
-        Self { cycle: Instant::NEVER, records: u64::MAX }
     }
 }
 

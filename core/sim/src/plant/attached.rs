@@ -3,7 +3,7 @@
 //! A plant receives its controller's edges. With overload protection, the run stops after each cycle of an ADC conversion,
 //! because an overload acts last in that cycle. The result of a self-test applies at the end of the boot.
 
-use crate::{controllers::Controllers, run::RunLimits};
+use crate::controllers::{Controllers, RunLimits};
 use alloc::vec::Vec;
 use stepscope_peripheral::signal::{Event, Levels, Record, Sink};
 use stepscope_peripheral::units::{Cycles, Instant};
