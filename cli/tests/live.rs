@@ -383,14 +383,14 @@ fn rejects_invalid_sessions_before_sending() {
         (&["serve", framed, "--tcp", "127.0.0.1:0", "--pace", "0"], 2, "0.001 to 100"),
         (&["serve", framed, "--port", "/dev/no-such-port"], 1, "No such file"),
         (&["serve", framed, "--pty", text(&link)], 1, "exists"),
-        (&["serve", text(&segments), "--tcp", "127.0.0.1:0"], 2, "nothing is on the line"),
+        (&["serve", text(&segments), "--tcp", "127.0.0.1:0"], 2, "without a serial line"),
         (&["serve", framed, "--tcp", "127.0.0.1:0", "--record", framed], 2, "would be overwritten"),
         (&["send", framed, "--port", "/dev/null"], 1, "/dev/null"),
         // Refused before the port is opened, which would fail with 1.
         (&["send", text(&script), "--port", "/dev/no-such-port"], 2, "use a motion or packets"),
         (&["send", framed, "--port", "tcp:127.0.0.1:1"], 1, "refused"),
         (&["send", framed, "--port", "pty:/dev/null", "--rs485", "rts"], 2, "9600"),
-        (&["send", raw, "--port", "tcp:127.0.0.1:1", "--lead", "100"], 2, "100 entries"),
+        (&["send", raw, "--port", "tcp:127.0.0.1:1", "--lead", "100"], 2, "a queue of 100"),
     ];
     for (arguments, code, why) in cases {
         let (ended, out, err) = ended(command(arguments).output().expect("it runs"));
