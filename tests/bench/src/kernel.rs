@@ -169,7 +169,7 @@ impl Kernel {
         match self {
             Self::Write => Facts {
                 name: "plain_write",
-                what: "the number of records of `stored_trace`, from a counter",
+                what: "writes as many records as `stored_trace`, filled from a counter",
                 ..plain
             },
             Self::Copy => {
