@@ -307,9 +307,13 @@ fn several_controllers_and_virtual_axes_are_refused() {
         (
             two.check().expect("a valid setup"),
             NotRunnable::Controllers(2),
-            "2 controllers; a chip runs one: give it its own",
+            "2 controllers do not fit on a chip; use one per chip",
         ),
-        (checked(axis), NotRunnable::Axis, "axis: on a chip the switches are real; leave the axis out"),
+        (
+            checked(axis),
+            NotRunnable::Axis,
+            "axis: a virtual axis cannot drive the real switches of a chip; remove it",
+        ),
     ] {
         let mut chip = Bench::new(&checked, [], Digest::default());
         let refused = Runner::power_up(Instant(0), &checked, &mut chip).map(|_| ());

@@ -231,14 +231,14 @@ impl LoadedCapture {
         if !capture.changes.is_empty() && map.entries().is_empty() {
             return Err(OpenError::NoMap { example: example(capture), names });
         }
-        let contents = match () {
+        let kind = match () {
             () if !capture.bytes.is_empty() => "bytes",
             () if !capture.positions.is_empty() => "positions",
             () => "changes",
         };
         let mut loaded = Self {
             format: capture.format.to_string(),
-            contents,
+            contents: kind,
             count: capture.len(),
             names,
             notes: capture.notes.iter().cloned().map(Note::from).collect(),
