@@ -126,7 +126,7 @@ fn links_are_decoded_and_invalid_ones_state_the_error() {
         (String::new(), "no scenario"),
         ("v=1".into(), "no scenario"),
         (link[..link.len() - 1].into(), "cut short"),
-        (link.replacen("c=2.", "c=3.", 1), "newer version"),
+        (link.replacen("c=3.", "c=4.", 1), "newer version"),
         ("c=1".repeat(10_000), "too long"),
         ("c=1.z.__proto__.00000000".into(), "cut short"),
     ] {
