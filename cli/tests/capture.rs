@@ -168,7 +168,12 @@ fn writes_a_scenario_that_reproduces_a_framed_run() {
     let digest = |out: &str| out.lines().next().map(str::to_owned);
     let (code, out, err) = stepscope(&["capture", &dump, "--scenario", &made], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));
-    assert!(out.contains("\nRX: 115200 baud (115180 measured), 482 bytes, 29 frames for address 3 of 1 channels, 0 broken\n"), "{out}");
+    assert!(
+        out.contains(
+            "\nRX: 115200 baud (115180 measured), 482 bytes, 29 frames for address 3 of 1 channel, 0 broken\n"
+        ),
+        "{out}"
+    );
     assert_eq!(digest(&run(&made, &[])), digest(&original));
     let (code, _, err) = stepscope(&["capture", &dump, "--scenario", &based, "--against", &framed], "");
     assert_eq!((code, err.as_str()), (Some(0), ""));

@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p stepscope-core --example line_script`
 
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{scenario::Problem, sim::Experiment};
 
 /// Two channels, so two bytes per packet: bit 7 is the direction, the other bits are the steps. A byte takes 1388 cycles
@@ -20,7 +20,7 @@ const SCENARIO: &str = r#"{
 
 fn main() -> Result<(), Vec<Problem>> {
     let experiment = Experiment::from_json(SCENARIO)?;
-    let mut recording = Recording::default();
+    let mut recording = StoredRun::default();
     let run = experiment.run(&mut recording);
 
     for (index, row) in recording.packets.rows().iter().enumerate() {

@@ -10,7 +10,7 @@
 //!
 //! ```
 //! # #[cfg(feature = "inspect")] {
-//! use stepscope_core::inspect::trace::stored_run::Recording;
+//! use stepscope_core::inspect::trace::stored_run::StoredRun;
 //! use stepscope_core::{peripheral::trace::steps, sim::Experiment};
 //!
 //! // One turn in 0.4 s by a cosine S-curve: 3200 microsteps.
@@ -19,7 +19,7 @@
 //!         { "cosine": { "distance": { "deg": 360 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }"#,
 //! )
 //! .expect("a valid scenario");
-//! let mut recording = Recording::default(); // or any Sink: a digest, a file, a check
+//! let mut recording = StoredRun::default(); // or any Sink: a digest, a file, a check
 //! let run = experiment.run(&mut recording);
 //!
 //! assert_eq!(run.positions()[0], 3200);
@@ -52,8 +52,8 @@
 //! ```
 //! # #[cfg(all(feature = "inspect", feature = "std"))] {
 //! use stepscope_core::inspect::recording::{alignment::{Alignment, Side}, tolerance::Tolerance};
-//! # use stepscope_core::{inspect::trace::stored_run::Recording, peripheral::trace::steps, sim::Experiment};
-//! # let mut recording = Recording::default();
+//! # use stepscope_core::{inspect::trace::stored_run::StoredRun, peripheral::trace::steps, sim::Experiment};
+//! # let mut recording = StoredRun::default();
 //! # Experiment::from_json("{}").expect("the default motion").run(&mut recording);
 //! # let plan = steps(&recording.trace, 0);
 //! // Your steps: here those of the plan, one of them missing.

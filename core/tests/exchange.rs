@@ -1,6 +1,6 @@
 //! What a run exports, taken in again.
 
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     inspect::{
         export::tables::{write_edges_head, write_edges_row},
@@ -12,16 +12,16 @@ use stepscope_core::{
     sim::{Experiment, Run, replayed},
 };
 
-fn recorded(scenario: &Scenario) -> (Experiment, Run, Recording) {
+fn recorded(scenario: &Scenario) -> (Experiment, Run, StoredRun) {
     let experiment = Experiment::new(scenario).expect("a good scenario");
-    let mut recording = Recording::default();
+    let mut recording = StoredRun::default();
     let run = experiment.run(&mut recording);
     recording.packets.finish();
     (experiment, run, recording)
 }
 
 /// The table of the first controller's packets, as a file.
-fn table_of(experiment: &Experiment, run: &Run, recording: &Recording) -> String {
+fn table_of(experiment: &Experiment, run: &Run, recording: &StoredRun) -> String {
     let table = PacketTable::new(experiment, run, 0, &recording.packets);
     let mut text = String::new();
     PacketTable::write_head(&mut text).expect("a string takes it");

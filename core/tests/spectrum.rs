@@ -1,6 +1,6 @@
 //! Spectra of whole scenarios, from their pulses at the STEP lines (DESIGN B5, Part D).
 
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     inspect::motion::{
         actual_motion::Pulses,
@@ -15,7 +15,7 @@ use stepscope_core::{
 /// where they end.
 fn made_distortion(json: &str) -> (f64, i32) {
     let experiment = Experiment::from_json(json).unwrap();
-    let mut recording = Recording::default();
+    let mut recording = StoredRun::default();
     experiment.run(&mut recording);
     let steps = steps(&recording.trace, 0);
     let zero = recording.first_tick().unwrap().0;
@@ -65,7 +65,7 @@ fn with_segments_every_step_of_the_sine_counts_whatever_the_ticks_are() {
                     r#"{{{bus},"source":{{"motion":{{"engine":"segments","axes":[{{"moves":[{moves}]}}]}}}}}}"#
                 );
                 let experiment = Experiment::from_json(&json).unwrap();
-                let mut recording = Recording::default();
+                let mut recording = StoredRun::default();
                 experiment.run(&mut recording);
                 let steps = steps(&recording.trace, 0);
                 let segments = experiment.segments().and_then(|lists| lists.lists().first());

@@ -276,7 +276,7 @@ fn what_has_no_table_or_no_end_is_refused_with_its_numbers() {
         assert_eq!(refused(quick.clone(), form), Some(cause));
     }
     let interval = 1 << 16;
-    let cause = Cause::SegmentInterval { step: 0, interval, pulse: PULSE };
+    let cause = Cause::SegmentInterval { step: 1, interval, pulse: PULSE };
     assert_eq!(refused(quick, Form::Document), Some(cause));
     let many = Move::Constant(Constant { distance: Distance::Steps(5e6), speed: steps_s(1e5) });
     let cause = Cause::Value(ValueError::TooMuch { given: 5e6, max: 4e6, of: "steps of a table" });

@@ -4,7 +4,7 @@
 //! All checks panic with what differs, so that property tests, fuzz targets and kept findings share them.
 
 use std::rc::Rc;
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     peripheral::{
         config::{Config, Protocol},
@@ -22,7 +22,7 @@ use stepscope_core::{
 #[derive(Default)]
 pub struct Left {
     /// Records, digest and packets.
-    pub recording: Recording,
+    pub recording: StoredRun,
     /// Everything that happened beside the signals.
     pub events: Vec<(Instant, Event)>,
 }

@@ -4,7 +4,7 @@
 //! it in the core; here is what comes out at the STEP lines.
 
 use std::{f64::consts::PI, fs, path::Path};
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     inspect::motion::spectrum::Spectrum,
     motion::{
@@ -26,13 +26,13 @@ use stepscope_core::{
 struct Made {
     scenario: Scenario,
     experiment: Experiment,
-    recording: Recording,
+    recording: StoredRun,
 }
 
 impl Made {
     fn of(scenario: Scenario) -> Self {
         let experiment = Experiment::new(&scenario).expect("it has no problems");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         let run = experiment.run(&mut recording);
         assert_eq!(run.device().faults().bits(), 0);
         recording.packets.finish();

@@ -51,7 +51,7 @@ export function exportOffers(state, engine, span) {
     name: `${baseName(state)}-line.json`,
     type: "application/json",
     label: hasSegments ? "Scenario with its segments, JSON" : "Line script of the sent bytes, JSON",
-    make: async () => [await engine.request("line_script"), "\n"],
+    make: async () => [await engine.request("replay_scenario"), "\n"],
   };
   return [
     {

@@ -2,7 +2,7 @@
 #![allow(clippy::expect_used, reason = "what is missing fails the test")]
 
 use stepscope_inspect::plant::log::{CycleWindow, MOTOR, PlantLog, SUPPLY};
-use stepscope_inspect::trace::stored_run::Recording;
+use stepscope_inspect::trace::stored_run::StoredRun;
 use stepscope_peripheral::units::Instant;
 use stepscope_plant::{Observer, Plant};
 use stepscope_sim::{Experiment, RunLimits};
@@ -25,10 +25,10 @@ impl Observer for Points {
 }
 
 /// A run in slices of `slice` cycles: its log, records, points and length.
-fn logged(json: &str, slice: u64) -> (PlantLog, Recording, Vec<(u64, Vec<f64>)>, u64) {
+fn logged(json: &str, slice: u64) -> (PlantLog, StoredRun, Vec<(u64, Vec<f64>)>, u64) {
     let experiment = Experiment::from_json(json).expect("no problem");
     let mut run = experiment.start();
-    let (mut recording, mut points) = (Recording::default(), Points::default());
+    let (mut recording, mut points) = (StoredRun::default(), Points::default());
     let mut log = PlantLog::new(run.plant(0).expect("a plant"));
     loop {
         let target = Instant(run.cycles().0.saturating_add(slice));

@@ -14,7 +14,7 @@
 //! ```
 
 use crate::round_half_up;
-use crate::timing::{Double, Exact};
+use crate::timing::{Exact, F106};
 use core::f64::consts::PI;
 use stepscope_peripheral::parameters;
 
@@ -186,9 +186,9 @@ macro_rules! quantity {
 
             /// [`Self::in_steps`] in 106 bits; with pi, the decimal of the quotient.
             #[allow(dead_code, reason = "not for distances, which are whole steps")]
-            pub(super) fn exact_in_steps(&self, mechanics: &Mechanics) -> Result<Double, NoSuchUnit> {
+            pub(super) fn exact_in_steps(&self, mechanics: &Mechanics) -> Result<F106, NoSuchUnit> {
                 let quotient = self.step_size(mechanics).map(|size| self.value() / size)?;
-                Ok(self.exact_quotient(mechanics).map_or_else(|| Double::decimal(quotient), |exact| exact.double()))
+                Ok(self.exact_quotient(mechanics).map_or_else(|| F106::decimal(quotient), |exact| exact.double()))
             }
 
             /// The quantity in steps as a fraction; with pi, the decimal of the quotient.
@@ -233,7 +233,7 @@ impl Distance {
     }
 
     /// The distance in steps, in 106 bits, from position `first` to this position in the same unit.
-    pub(super) fn exact_steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<Double, NoSuchUnit> {
+    pub(super) fn exact_steps_from(&self, first: f64, mechanics: &Mechanics) -> Result<F106, NoSuchUnit> {
         let quotient = (self.value() - first) / self.step_size(mechanics)?;
         if !mechanics.can_convert(self.value() - first) {
             return Ok(quotient.into());

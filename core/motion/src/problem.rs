@@ -10,9 +10,10 @@
 //! assert!(problems[0].to_string().starts_with("axis.speed: 12000 steps/s"), "{}", problems[0]);
 //! ```
 
-use alloc::{format, string::String};
+use alloc::{format, string::String, string::ToString};
 use core::fmt;
-use stepscope_peripheral::segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes};
+use core::ops::{Range, RangeInclusive};
+use stepscope_peripheral::segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes, Refusal};
 
 /// A problem of one value, shown as `path: cause`.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +30,7 @@ impl<C> Problem<C> {
         Self { path: path.into(), cause: cause.into() }
     }
 
-    /// The same problem with the cause type of a crate further up, such as a scenario's.
+    /// The same problem with the cause type of a crate that depends on this one, such as a scenario's.
     pub fn widen<D: From<C>>(self) -> Problem<D> {
         Problem { path: self.path, cause: self.cause.into() }
     }
@@ -72,9 +73,10 @@ impl fmt::Display for ValueError {
         match self {
             Self::Range { given, min, max, unit } => {
                 let (unit, space) = (unit_symbol(unit), if unit.is_empty() { "" } else { " " });
-                write!(f, "{}{space}{unit} is out of range; use {}", Short(*given), Short(*min))?;
+                let (given, shown_min) = (outside(*given, *min..=*max), rounded_up(*min));
+                write!(f, "{given}{space}{unit} is out of range; use {shown_min}")?;
                 if min < max {
-                    write!(f, " to {}", Short(*max))?;
+                    write!(f, " to {}", rounded_down(*max))?;
                 }
                 write!(f, "{space}{unit}")
             }
@@ -84,8 +86,8 @@ impl fmt::Display for ValueError {
             }
             Self::Conflict { detail } => f.write_str(detail),
             Self::TooMuch { given, max, of } => {
-                let (given, max) = (Short(*given), Short(*max));
-                write!(f, "{given} {of} exceed the maximum of {max}; use {}", smaller_load(of))
+                let (given, max) = (outside(*given, 0.0..=*max), rounded_down(*max));
+                write!(f, "{given} {of} exceed the maximum of {max}; use {}", remedy_for(of))
             }
         }
     }
@@ -100,8 +102,9 @@ fn noun(number: usize, plural: &str) -> &str {
     }
 }
 
-fn smaller_load(of: &str) -> &'static str {
-    match of {
+/// What makes a quantity, as named in [`ValueError::TooMuch`], smaller.
+fn remedy_for(quantity: &str) -> &'static str {
+    match quantity {
         "table rows" => "a higher acceleration or a lower top speed",
         "steps" => "a shorter motion, or run it by ticks",
         "steps of a table" => "a shorter motion, or a table for each part of it",
@@ -123,7 +126,7 @@ fn smaller_load(of: &str) -> &'static str {
 #[non_exhaustive]
 pub enum Cause {
     Value(ValueError),
-    /// The axis' mechanics, of this kind, do not have the unit.
+    /// The unit is not available for this kind of mechanics.
     NoSuchUnit {
         given: f64,
         unit: &'static str,
@@ -175,7 +178,8 @@ pub enum Cause {
         before: f64,
         min: f64,
     },
-    /// A tick (from 0) needs more steps than it has slots, so a rate above the limit of the bus; both in steps/s.
+    /// Tick `tick` (from 0) needs more steps than its slots allow. `rate` is the required, `limit` the available step
+    /// rate, in steps/s.
     TooManySteps {
         tick: u64,
         steps: u64,
@@ -183,16 +187,17 @@ pub enum Cause {
         rate: f64,
         limit: f64,
     },
-    NoSegmentSteps,
-    /// The interval of a segment's step (from 0), in 1/65536 cycle, is out of its range.
+    /// A segment of steps has a count of 0.
+    EmptySegment,
+    /// The interval of a segment's step (from 1), in 1/65536 cycle, is out of its range.
     SegmentInterval {
-        step: u32,
+        step: u64,
         interval: i128,
         pulse: PulseTimes,
     },
-    /// The time after a segment, in 1/65536 cycle, exceeds 64 bits.
-    SegmentEnd {
-        next: i128,
+    /// The end of a segment, in 1/65536 cycle, exceeds 64 bits.
+    SegmentEndTooLate {
+        end: i128,
     },
     /// A step (from 1) of a motion follows the previous step, or the start, after too few cycles.
     StepTooSoon {
@@ -209,9 +214,20 @@ impl From<ValueError> for Cause {
 }
 
 impl Cause {
-    /// Whether it follows from several fields, so that it is meaningless if one of them is invalid.
-    pub const fn joins_fields(&self) -> bool {
-        !matches!(self, Self::Value(ValueError::Range { .. }) | Self::NoSteps { .. } | Self::NoSegmentSteps)
+    /// The cause for a refused list of segments.
+    pub fn of_refusal(refusal: Refusal, pulse: PulseTimes) -> Self {
+        match refusal {
+            Refusal::Interval { step, interval } => {
+                Self::SegmentInterval { step: u64::from(step) + 1, interval, pulse }
+            }
+            Refusal::End { next } => Self::SegmentEndTooLate { end: next },
+            Refusal::NoSteps | Refusal::NoChannel | Refusal::Start => Self::EmptySegment,
+        }
+    }
+
+    /// Whether the check used several fields. Such a problem is skipped if one of them is unreadable.
+    pub const fn depends_on_several_fields(&self) -> bool {
+        !matches!(self, Self::Value(ValueError::Range { .. }) | Self::NoSteps { .. } | Self::EmptySegment)
     }
 }
 
@@ -228,25 +244,29 @@ impl fmt::Display for Cause {
             Self::RampTooLong { ramp_s, duration_s } => write!(
                 f,
                 "two ramps of {} s do not fit in {} s; use a ramp of at most {} s",
-                Short(*ramp_s),
+                outside(*ramp_s, 0.0..=duration_s / 2.0),
                 Short(*duration_s),
-                Short(duration_s / 2.0)
+                rounded_down(duration_s / 2.0)
             ),
             Self::TopBelowStart { top, start } => write!(
                 f,
                 "a top speed of {} steps/s is below the start speed of {} steps/s; use a higher top speed or a lower start speed",
-                Short(*top),
+                outside(*top, *start..=f64::MAX),
                 Short(*start)
             ),
             Self::TopAboveTable { top, max } => write!(
                 f,
                 "a top speed of {} steps/s is above the table's maximum of {} steps/s; use a lower top speed or a higher maximum",
-                Short(*top),
+                outside(*top, 0.0..=*max),
                 Short(*max)
             ),
             Self::TimerTooSlow { rate, timer_hz } => {
-                let rate = Short(*rate);
-                write!(f, "a timer of {timer_hz} Hz is too slow for {rate} steps/s; use at least {rate} Hz")
+                let (shown_rate, min) =
+                    (outside(*rate, 0.0..=f64::from(*timer_hz)), Short(libm::ceil(*rate)));
+                write!(
+                    f,
+                    "a timer of {timer_hz} Hz is too slow for {shown_rate} steps/s; use at least {min} Hz"
+                )
             }
             Self::TooFast { rate, max } => write!(
                 f,
@@ -257,10 +277,10 @@ impl fmt::Display for Cause {
             Self::SliceTooShort { rate, slice_s } => write!(
                 f,
                 "a slice of {} s has only {} steps at the top speed of {} steps/s; use slices of at least {} s, more distance, less time or the exact method",
-                Short(*slice_s),
-                Short(rate * slice_s),
+                outside(*slice_s, 1.0 / rate..=f64::MAX),
+                outside(rate * slice_s, 1.0..=f64::MAX),
                 Short(*rate),
-                Short(1.0 / rate)
+                rounded_up(1.0 / rate)
             ),
             Self::SlicesTooFew { slices, slice_s, steps, rate } => write!(
                 f,
@@ -270,7 +290,8 @@ impl fmt::Display for Cause {
                 Short(*rate)
             ),
             Self::NoSteps { steps } => {
-                write!(f, "{} steps is less than one step; use at least one step, or a dwell", Short(*steps))
+                let steps = outside(*steps, 1.0..=f64::MAX);
+                write!(f, "{steps} steps is less than one step; use at least one step, or a dwell")
             }
             Self::NotRising { given, before, min } => write!(
                 f,
@@ -285,25 +306,28 @@ impl fmt::Display for Cause {
                 Short(*rate),
                 Short(*limit)
             ),
-            Self::NoSegmentSteps => f.write_str("0 steps; use at least 1 step, or a dwell"),
+            Self::EmptySegment => f.write_str("0 steps; use at least 1 step, or a dwell"),
             Self::SegmentInterval { step, interval, pulse } => {
-                write!(f, "step {step} has an interval of {interval}/65536 cycles")?;
+                let (min, max) = (pulse.min_interval().0, LAST_CYCLE.0);
+                let given = outside(*interval as f64 / PARTS_PER_CYCLE, min as f64..=max as f64);
+                write!(f, "step {step} follows after {given} cycle{}", if given == "1" { "" } else { "s" })?;
                 if *interval > u64::MAX.into() {
-                    write!(f, "; use at most {}", u64::MAX)
+                    write!(f, "; use at most {max} cycles")
                 } else {
-                    let min = pulse.min_interval().0 << FRACTION_BITS;
+                    let min = counted(min, "cycles");
                     write!(f, ", {}; use at least {min}, or shorter pulse times", pulse_needs(*pulse))
                 }
             }
-            Self::SegmentEnd { next } => write!(
+            Self::SegmentEndTooLate { end } => write!(
                 f,
-                "the segment ends too late, at {next}/65536 cycles; use at most {}/65536 (cycle {})",
-                u64::MAX,
+                "the segment ends too late, in cycle {}; use at most cycle {}",
+                end >> FRACTION_BITS,
                 LAST_CYCLE.0
             ),
             Self::StepTooSoon { step, interval, pulse } => write!(
                 f,
-                "step {step} comes {interval} cycles after {}, {}; use a slower motion or shorter pulse times",
+                "step {step} comes {} after {}, {}; use a slower motion or shorter pulse times",
+                counted(*interval, "cycles"),
                 if *step == 1 { "the start" } else { "the previous step" },
                 pulse_needs(*pulse)
             ),
@@ -311,14 +335,49 @@ impl fmt::Display for Cause {
     }
 }
 
+const PARTS_PER_CYCLE: f64 = (1_u64 << FRACTION_BITS) as f64;
+
+/// Such as `2 cycles`.
+fn counted(number: u64, plural: &str) -> String {
+    format!("{number} {}", noun(usize::try_from(number).unwrap_or(usize::MAX), plural))
+}
+
 fn pulse_needs(pulse: PulseTimes) -> String {
+    let min = counted(pulse.min_interval().0, "cycles");
     let PulseTimes { width, setup, hold } = pulse;
-    let min = pulse.min_interval().0;
     let (width, setup, hold) = (width.0, setup.0, hold.0);
     format!("but a pulse needs {min} (width {width} + max(hold {hold} + setup {setup}, 1))")
 }
 
+/// A value outside a range, with as many digits as are needed to see that it is outside.
+fn outside(value: f64, range: RangeInclusive<f64>) -> String {
+    if range.contains(&Short(value).shown()) { value.to_string() } else { Short(value).to_string() }
+}
+
+/// A minimum that is still allowed as it is shown.
+fn rounded_up(min: f64) -> Short {
+    let magnitude = libm::fabs(min);
+    let last_place = if FIXED_POINT.contains(&magnitude) { 1e-4 } else { magnitude * 1e-5 };
+    if Short(min).shown() < min { Short(min + last_place) } else { Short(min) }
+}
+
+/// A maximum that is still allowed as it is shown.
+fn rounded_down(max: f64) -> Short {
+    Short(-rounded_up(-max).0)
+}
+
+/// Magnitudes that are shown without an exponent; whole numbers are up to 1e17.
+const FIXED_POINT: Range<f64> = 1e-3..1e6;
+
+/// A number with four decimals or six digits, rounded to nearest.
 struct Short(f64);
+
+impl Short {
+    /// The number as the text states it.
+    fn shown(&self) -> f64 {
+        self.to_string().parse().unwrap_or(self.0)
+    }
+}
 
 impl fmt::Display for Short {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -326,7 +385,7 @@ impl fmt::Display for Short {
         let magnitude = libm::fabs(value);
         if value == libm::trunc(value) && magnitude < 1e17 {
             write!(f, "{value:.0}")
-        } else if (1e-3..1e6).contains(&magnitude) {
+        } else if FIXED_POINT.contains(&magnitude) {
             let text = format!("{value:.4}");
             f.write_str(text.trim_end_matches('0').trim_end_matches('.'))
         } else {
@@ -354,5 +413,65 @@ fn unit_symbol(unit: &str) -> &str {
         "mm_s3" => "mm/s^3",
         "deg_s3" => "deg/s^3",
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stepscope_peripheral::units::Cycles;
+
+    fn pulse() -> PulseTimes {
+        PulseTimes { width: Cycles(1), setup: Cycles(1), hold: Cycles(0) }
+    }
+
+    #[test]
+    fn a_value_out_of_range_is_not_shown_as_its_bound() {
+        let rows = [
+            (1.000_01, 0.0, 1.0, "1.00001 is out of range; use 0 to 1"),
+            (1_000_000.4, 1.0, 1e6, "1000000.4 is out of range; use 1 to 1000000"),
+            (2.5, 0.0, 1.0, "2.5 is out of range; use 0 to 1"),
+            (1e300, 0.0, 1.0, "1e300 is out of range; use 0 to 1"),
+        ];
+        for (given, min, max, expected) in rows {
+            assert_eq!(ValueError::Range { given, min, max, unit: "" }.to_string(), expected);
+        }
+        let top = Cause::TopAboveTable { top: 100.000_01, max: 100.0 }.to_string();
+        assert!(top.starts_with("a top speed of 100.00001 steps/s is above"), "{top}");
+    }
+
+    #[test]
+    fn suggested_bounds_are_allowed() {
+        let ramp = Cause::RampTooLong { ramp_s: 0.002, duration_s: 0.003_35 }.to_string();
+        assert!(ramp.ends_with("use a ramp of at most 0.0016 s"), "{ramp}");
+        let slice = Cause::SliceTooShort { rate: 9000.0, slice_s: 1e-4 }.to_string();
+        assert!(slice.contains("use slices of at least 1.11112e-4 s"), "{slice}");
+        let timer = Cause::TimerTooSlow { rate: 3_999.000_01, timer_hz: 3999 }.to_string();
+        assert_eq!(timer, "a timer of 3999 Hz is too slow for 3999.00001 steps/s; use at least 4000 Hz");
+        for bound in [1.0 / 3.0, 2.0 / 3.0, 1e-7 / 3.0, 2e-7 / 3.0, 1e9 / 7.0, 0.0, 5.0, -1.0 / 3.0] {
+            assert!(rounded_up(bound).shown() >= bound, "{bound}");
+            assert!(rounded_down(bound).shown() <= bound, "{bound}");
+        }
+    }
+
+    #[test]
+    fn intervals_of_segments_are_in_cycles() {
+        let interval = |interval| Cause::SegmentInterval { step: 3, interval, pulse: pulse() }.to_string();
+        assert_eq!(
+            interval(1 << 16),
+            "step 3 follows after 1 cycle, but a pulse needs 2 cycles (width 1 + max(hold 0 + setup 1, 1)); \
+             use at least 2 cycles, or shorter pulse times"
+        );
+        assert_eq!(
+            interval(1 << 64),
+            "step 3 follows after 281474976710656 cycles; use at most 281474976710655 cycles"
+        );
+    }
+
+    #[test]
+    fn steps_are_counted_from_1() {
+        let refusal = Refusal::Interval { step: 0, interval: 1 << 16 };
+        let text = Cause::of_refusal(refusal, pulse()).to_string();
+        assert!(text.starts_with("step 1 follows"), "{text}");
     }
 }

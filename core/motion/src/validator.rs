@@ -168,8 +168,8 @@ mod tests {
     #[test]
     fn lists_problems_in_the_order_they_are_added() {
         let mut validator = Validator::<Cause>::default();
-        validator.add("a", Cause::NoSegmentSteps);
-        validator.extend([Problem::<Cause>::new("b.c", Cause::NoSegmentSteps)]);
+        validator.add("a", Cause::EmptySegment);
+        validator.extend([Problem::<Cause>::new("b.c", Cause::EmptySegment)]);
         assert_eq!(validator.count(), 2);
         let paths: Vec<_> = validator.problems().into_iter().map(|problem| problem.path).collect();
         assert_eq!(paths, ["a", "b.c"]);
@@ -179,12 +179,12 @@ mod tests {
     fn counts_problems_beyond_the_maximum_of_listed_ones() {
         let mut validator = Validator::<Cause>::default();
         for _ in 0..MAX_PROBLEMS {
-            validator.add("a", Cause::NoSegmentSteps);
+            validator.add("a", Cause::EmptySegment);
         }
         let before = validator.count();
-        validator.add("b", Cause::NoSegmentSteps);
+        validator.add("b", Cause::EmptySegment);
         assert_eq!(validator.count(), before + 1);
-        validator.extend([Problem::<Cause>::new("c", Cause::NoSegmentSteps)]);
+        validator.extend([Problem::<Cause>::new("c", Cause::EmptySegment)]);
         assert_eq!((validator.count(), validator.is_ok()), (before + 2, false));
         let problems = validator.problems();
         assert_eq!(problems.len(), MAX_PROBLEMS);

@@ -134,10 +134,10 @@ impl From<ConfigError> for Cause {
 }
 
 impl Cause {
-    /// Whether it involves several fields, so that it is wrong if one of them cannot be read.
-    pub const fn joins_fields(&self) -> bool {
+    /// Whether the check used several fields. Such a problem is skipped if one of them is unreadable.
+    pub const fn depends_on_several_fields(&self) -> bool {
         match self {
-            Self::Motion(cause) => cause.joins_fields(),
+            Self::Motion(cause) => cause.depends_on_several_fields(),
             Self::Value(ValueError::Range { .. })
             | Self::Syntax { .. }
             | Self::Type { .. }

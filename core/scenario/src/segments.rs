@@ -1,12 +1,12 @@
 //! Checks segment lists (DESIGN A8) and converts them for the segment engine, and back.
 
 use crate::{
-    Cause, ChannelSegments, Direction, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator,
+    ChannelSegments, Direction, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator,
     check::Channels,
 };
 use alloc::vec::Vec;
-use stepscope_motion::{self as motion, MAX_PROBLEMS};
-use stepscope_peripheral::segment::{self, CheckedSegments, PulseTimes, Refusal, Refused, SegmentList};
+use stepscope_motion::{Cause, MAX_PROBLEMS};
+use stepscope_peripheral::segment::{self, CheckedSegments, PulseTimes, Refused, SegmentList};
 use stepscope_peripheral::{config::Bus, signal::MAX_CHANNELS, units::Instant};
 
 /// Maximum segments of all channels together.
@@ -27,9 +27,10 @@ impl SegmentLists {
                 for Refused { channel, segment, refusal } in refused {
                     // `check_ranges` has checked the starts.
                     if let Some(segment) = segment {
+                        let cause = Cause::of_refusal(refusal, pulse);
                         validator.at_entry(channel, |list| {
                             list.at("segments", |segments| {
-                                segments.at_entry(segment, |here| here.add("", cause(refusal, pulse)));
+                                segments.at_entry(segment, |here| here.add("", cause));
                             });
                         });
                     }
@@ -72,14 +73,6 @@ impl From<&CheckedSegments> for SegmentLists {
     }
 }
 
-fn cause(refusal: Refusal, pulse: PulseTimes) -> Cause {
-    Cause::Motion(match refusal {
-        Refusal::Interval { step, interval } => motion::Cause::SegmentInterval { step, interval, pulse },
-        Refusal::End { next } => motion::Cause::SegmentEnd { next },
-        Refusal::NoSteps | Refusal::NoChannel | Refusal::Start => motion::Cause::NoSegmentSteps,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::{Compact, Scenario};
@@ -112,20 +105,20 @@ mod tests {
                 r#"{"segments":[{"dwell":{}},{"steps":{"count":0}},{"steps":{"interval_q16":5242879}},{"steps":{"count":4000000000,"interval_q16":8242880,"add_q16":-1}}]}"#,
                 &[
                     "source.segments.channels[0].segments[1]: 0 steps; use at least 1 step, or a dwell",
-                    "source.segments.channels[0].segments[2]: step 0 has an interval of 5242879/65536 cycles, but a pulse needs 80 (width 40 + max(hold 0 + setup 40, 1)); use at least 5242880, or shorter pulse times",
-                    "source.segments.channels[0].segments[3]: step 3000001 has an interval of 5242879/65536 cycles, but a pulse needs 80 (width 40 + max(hold 0 + setup 40, 1)); use at least 5242880, or shorter pulse times",
+                    "source.segments.channels[0].segments[2]: step 1 follows after 79.99998474121094 cycles, but a pulse needs 80 cycles (width 40 + max(hold 0 + setup 40, 1)); use at least 80 cycles, or shorter pulse times",
+                    "source.segments.channels[0].segments[3]: step 3000002 follows after 79.99998474121094 cycles, but a pulse needs 80 cycles (width 40 + max(hold 0 + setup 40, 1)); use at least 80 cycles, or shorter pulse times",
                 ],
             ),
             (
                 r#"{"segments":[{"steps":{"count":3,"interval_q16":18446744073709551615,"add_q16":9223372036854775807}},{"steps":{}}]}"#,
                 &[
-                    "source.segments.channels[0].segments[0]: step 1 has an interval of 27670116110564327422/65536 cycles; use at most 18446744073709551615",
+                    "source.segments.channels[0].segments[0]: step 2 follows after 422212465065984 cycles; use at most 281474976710655 cycles",
                 ],
             ),
             (
                 r#"{"segments":[{"steps":{"count":4000000000}},{"steps":{"count":4000000000,"interval_q16":10485760000}},{"steps":{"count":1}}]}"#,
                 &[
-                    "source.segments.channels[0].segments[1]: the segment ends too late, at 46137344000000065536/65536 cycles; use at most 18446744073709551615/65536 (cycle 281474976710655)",
+                    "source.segments.channels[0].segments[1]: the segment ends too late, in cycle 704000000000001; use at most cycle 281474976710655",
                 ],
             ),
         ];

@@ -111,7 +111,8 @@ impl Experiment {
         }
         let mut problems = unread.clone();
         problems.extend(validated.err().unwrap_or_default().into_iter().filter(|problem| {
-            !problem.cause.joins_fields() && !unread.iter().any(|bad| problem.path.starts_with(&bad.path))
+            !problem.cause.depends_on_several_fields()
+                && !unread.iter().any(|bad| problem.path.starts_with(&bad.path))
         }));
         Err(problems)
     }

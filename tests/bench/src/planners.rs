@@ -159,7 +159,7 @@ impl Planner {
                 .pop(),
             _ => None,
         }
-        .ok_or_else(|| vec![Problem::new("axis", Cause::NoSegmentSteps)])
+        .ok_or_else(|| vec![Problem::new("axis", Cause::EmptySegment)])
     }
 }
 

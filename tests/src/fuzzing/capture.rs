@@ -8,7 +8,7 @@
 use arbitrary::{Result, Unstructured};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use std::{collections::BTreeSet, io::Cursor, slice};
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     capture::{
         Capture, ChannelMap,
@@ -122,7 +122,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
 
 /// The trace of a run as the files that Stepscope writes.
 fn written(json: &str) -> Vec<Vec<u8>> {
-    let (Ok(experiment), mut recording) = (Experiment::from_json(json), Recording::default()) else {
+    let (Ok(experiment), mut recording) = (Experiment::from_json(json), StoredRun::default()) else {
         return Vec::new();
     };
     let _ = experiment.run(&mut recording);
@@ -359,7 +359,7 @@ fn run(experiment: &Experiment) -> Option<Vec<Record>> {
         && cost.bytes <= RUN_BYTES
         && (experiment.segments().is_some() || cost.end_cycle <= RUN_CYCLES);
     is_cheap.then(|| {
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         let _ = experiment.run(&mut recording);
         recording.trace
     })

@@ -3,7 +3,7 @@
 use anyhow::{Result, anyhow};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use data_encoding::BASE64URL_NOPAD;
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     peripheral::trace::Digest,
     scenario::{
@@ -18,7 +18,7 @@ use stepscope_core::{
 pub(crate) struct Known {
     pub(crate) scenario: Scenario,
     pub(crate) experiment: Experiment,
-    pub(crate) recording: Recording,
+    pub(crate) recording: StoredRun,
     /// 16 hexadecimal digits, as the page shows it.
     pub(crate) digest: String,
     /// What stands behind the `#`.
@@ -30,7 +30,7 @@ impl Known {
     pub(crate) fn of(json: &str) -> Result<Self> {
         let scenario = Scenario::from_json(json).map_err(listed)?;
         let experiment = Experiment::new(&scenario).map_err(listed)?;
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         experiment.run(&mut recording);
         recording.packets.finish();
         let digest = format!("{:016x}", recording.digest.value());

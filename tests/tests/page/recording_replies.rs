@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, ensure};
 use stepscope_core::inspect::packets::log::RowOutcome;
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     peripheral::{
         signal::{Levels, Record},
@@ -116,7 +116,7 @@ fn at_the_line(traces: [&[Record]; 2]) -> Vec<Record> {
 fn each_controllers_table_has_its_own_recorded_replies_and_none_of_the_model() -> Result<()> {
     in_browser(|page| async move {
         let experiment = Experiment::from_json(TWO).ok().context("no problems")?;
-        let mut recordings = [Recording::default(), Recording::default()];
+        let mut recordings = [StoredRun::default(), StoredRun::default()];
         let run = experiment.run_each(&mut recordings);
         let answered = recordings.each_ref().map(|one| {
             one.packets.rows().iter().filter(|row| matches!(row.outcome, RowOutcome::Reply(_))).count()

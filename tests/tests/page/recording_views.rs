@@ -5,7 +5,7 @@ use std::io::Cursor;
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     capture::read::{Limits, read},
     inspect::{
@@ -141,7 +141,7 @@ fn recorded_replies_stand_in_the_table_of_packets_with_their_turnaround_also_aft
         show(&page).await?;
         // The model's table has as many rows.
         page.until(ON_SHOW).await?;
-        let run = framed.experiment.run(&mut Recording::default());
+        let run = framed.experiment.run(&mut StoredRun::default());
         let table = PacketTable::new(&framed.experiment, &run, 0, &framed.recording.packets);
         let rows = table.len();
         let turnaround = table.detail(1).and_then(|reply| reply.turnaround_cycles).context("a reply")?;

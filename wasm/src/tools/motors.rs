@@ -4,7 +4,7 @@ use crate::convert::{field, numbers, object};
 use crate::scenario::{ValidatedScenario, listed};
 use js_sys::Object;
 use serde::Serialize;
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     inspect::{
         motion::torque::{Machine, TorqueCurve},
@@ -173,7 +173,7 @@ impl ValidatedScenario {
         while let Some(plant) = run.plant(logs.len()) {
             logs.push(PlantLog::new(plant));
         }
-        let mut recordings: Vec<Recording> = logs.iter().map(|_| Recording::default()).collect();
+        let mut recordings: Vec<StoredRun> = logs.iter().map(|_| StoredRun::default()).collect();
         let limits = RunLimits { records: RECORDS_PER_CHECK, ..RunLimits::default() };
         while !run.advance_observed(limits, &mut recordings, &mut logs) {
             check_records(&recordings).map_err(|error| JsError::new(&error.to_string()))?;

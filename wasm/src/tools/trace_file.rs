@@ -3,7 +3,7 @@
 use crate::convert::object;
 use crate::scenario::{ValidatedScenario, config, listed};
 use serde::Serialize;
-use stepscope_core::inspect::trace::stored_run::Recording;
+use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::inspect::trace::{diff::TraceDiff, stored_run::record_run};
 use stepscope_core::peripheral::signal;
 use wasm_bindgen::prelude::*;
@@ -28,7 +28,7 @@ struct TraceDifference {
 /// The trace of a controller, compared with a file in pieces.
 #[wasm_bindgen]
 pub struct TraceFile {
-    recording: Recording,
+    recording: StoredRun,
     diff: TraceDiff,
 }
 

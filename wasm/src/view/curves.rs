@@ -100,7 +100,7 @@ impl Simulation {
         let mask = 1 << axis | 1 << (Levels::DIR_SHIFT + u32::from(axis)) | Levels::RX;
         let mut bytes = Vec::new();
         let mut last = None;
-        for record in &self.selected().recording.trace {
+        for record in &self.selected().stored.trace {
             let levels = record.levels.0 & mask;
             if last.replace(levels) != Some(levels) {
                 bytes.extend(record.cycle.0.to_le_bytes());
@@ -182,7 +182,7 @@ impl Simulation {
 
     /// Start of the motions, in s.
     fn zero_s(&self) -> f64 {
-        let first = self.selected().recording.first_tick();
+        let first = self.selected().stored.first_tick();
         first.map_or(0.0, |start| start.seconds(self.experiment.config().clock_hz()))
     }
 
@@ -206,7 +206,7 @@ impl Simulation {
         Pulses::of_run(
             channel,
             recorded.steps_of(channel),
-            &recorded.recording.packets,
+            &recorded.stored.packets,
             self.experiment.segments().and_then(|all| all.lists().get(usize::from(channel))),
             config(&self.experiment, self.selected),
         )

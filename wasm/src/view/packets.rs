@@ -136,7 +136,7 @@ impl Simulation {
         most_bytes: u32,
         most_bits: u32,
     ) -> Result<JsValue, JsError> {
-        let decoder = LineDecoder::new(self.table(), &self.selected().recording.trace);
+        let decoder = LineDecoder::new(self.table(), &self.selected().stored.trace);
         let (start, end) = (cycle(start_cycle), cycle(end_cycle));
         object(&decoder.decode(start.0, end.0, most_bytes as usize, most_bits as usize))
     }
@@ -186,6 +186,6 @@ impl Simulation {
 
 impl Simulation {
     fn table(&self) -> PacketTable<'_> {
-        PacketTable::new(&self.experiment, &self.run, self.selected, &self.selected().recording.packets)
+        PacketTable::new(&self.experiment, &self.run, self.selected, &self.selected().stored.packets)
     }
 }

@@ -21,7 +21,7 @@ impl Simulation {
         let window = CycleWindow { from: from.max(0.0) as u64, to: to.max(0.0) as u64, columns };
         let hz = f64::from(self.experiment.config().clock_hz());
         let result = Object::new();
-        let bands = log.curves(&self.selected().recording.trace, window, &values);
+        let bands = log.curves(&self.selected().stored.trace, window, &values);
         for (name, band) in names.zip(bands) {
             let one = Object::new();
             let seconds: Vec<f64> = band.cycle.iter().map(|cycle| cycle / hz).collect();
@@ -36,7 +36,7 @@ impl Simulation {
     /// The same values at a cycle.
     pub fn plant_at(&self, channel: usize, cycle: f64) -> Option<Object> {
         let (log, values, names) = self.plant_values(channel)?;
-        let all = log.at(&self.selected().recording.trace, cycle.max(0.0) as u64);
+        let all = log.at(&self.selected().stored.trace, cycle.max(0.0) as u64);
         let result = Object::new();
         for (name, value) in names.zip(values) {
             field(&result, name, &all.get(value).copied().into());

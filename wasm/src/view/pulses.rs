@@ -50,7 +50,7 @@ impl Simulation {
 impl Simulation {
     fn signals(&self) -> Signals<'_> {
         let selected = self.selected();
-        Signals { trace: &selected.recording.trace, changes: &selected.changes }
+        Signals { trace: &selected.stored.trace, changes: &selected.changes }
     }
 }
 

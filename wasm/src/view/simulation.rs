@@ -10,7 +10,7 @@ use stepscope_core::{
         packets::packet_table::Filter,
         plant::log::PlantLog,
         recording::replies,
-        trace::{changes::Changes, drivers, run_sink::RunSink, stored_run::Recording, timing::TimingCheck},
+        trace::{changes::Changes, drivers, run_sink::RunSink, stored_run::StoredRun, timing::TimingCheck},
     },
     peripheral::{
         config::Config,
@@ -68,7 +68,7 @@ impl Sink for RunRecorder {
 
 #[derive(Default)]
 pub(crate) struct ControllerRecording {
-    pub(crate) recording: Recording,
+    pub(crate) stored: StoredRun,
     pub(crate) changes: Changes,
     pub(crate) timing: Option<TimingCheck>,
     pub(crate) plant: Option<PlantLog>,
@@ -80,7 +80,7 @@ impl ControllerRecording {
         if let Some(counted) = self.steps.get_mut(usize::from(channel))
             && counted.is_none()
         {
-            *counted = Some(steps(&self.recording.trace, channel));
+            *counted = Some(steps(&self.stored.trace, channel));
         }
     }
 
@@ -88,7 +88,7 @@ impl ControllerRecording {
     pub(crate) fn positions(&self) -> Vec<i32> {
         let mut positions = vec![0_i32; self.steps.len()];
         let mut before = Levels(0);
-        for record in &self.recording.trace {
+        for record in &self.stored.trace {
             let mut rises = record.levels.step() & !before.step();
             while rises != 0 {
                 let channel = rises.trailing_zeros();
@@ -104,15 +104,15 @@ impl ControllerRecording {
     }
 
     fn show(&mut self, recorded: Vec<Record>, timing: Option<TimingCheck>) {
-        (self.recording.trace, self.recording.digest) = (recorded, Digest::default());
+        (self.stored.trace, self.stored.digest) = (recorded, Digest::default());
         (self.timing, self.changes) = (timing, Changes::default());
     }
 
     /// Processes records `from..to` of the recording.
     fn process(&mut self, from: usize, to: usize) {
-        let Some(known) = self.recording.trace.get(..to) else { return };
+        let Some(known) = self.stored.trace.get(..to) else { return };
         for record in known.iter().skip(from) {
-            self.recording.digest.record(*record);
+            self.stored.digest.record(*record);
             self.timing.record(*record);
         }
         self.changes.extend(known);
@@ -151,7 +151,7 @@ impl Simulation {
         if done {
             self.finish();
         }
-        let records = self.recordings.iter().map(|recorded| recorded.recording.digest.records()).sum();
+        let records = self.recordings.iter().map(|recorded| recorded.stored.digest.records()).sum();
         progress(&self.experiment, &self.run, done, records)
     }
 
@@ -181,21 +181,21 @@ impl Simulation {
     fn run_slice(&mut self, max_records: u32) {
         self.panels.save_stop(self.run.stand_alone());
         let recorder = |recorded: &mut ControllerRecording| RunRecorder {
-            run: RunSink { recording: take(&mut recorded.recording), timing: recorded.timing.take() },
+            run: RunSink { stored: take(&mut recorded.stored), timing: recorded.timing.take() },
             inputs: Vec::new(),
         };
         let mut recorders: Vec<RunRecorder> = self.recordings.iter_mut().map(recorder).collect();
         let mut logs: Vec<_> = self.recordings.iter_mut().map(|recorded| recorded.plant.as_mut()).collect();
         let done = advance(&self.experiment, &mut self.run, max_records, &mut recorders, &mut logs);
         for (recorded, recorder) in self.recordings.iter_mut().zip(recorders) {
-            let RunRecorder { run: RunSink { recording, timing }, inputs } = recorder;
+            let RunRecorder { run: RunSink { stored, timing }, inputs } = recorder;
             self.panels.inputs.extend(inputs);
-            recorded.changes.extend(&recording.trace);
-            (recorded.recording, recorded.timing) = (recording, timing);
+            recorded.changes.extend(&stored.trace);
+            (recorded.stored, recorded.timing) = (stored, timing);
         }
         for (index, recorded) in self.recordings.iter_mut().enumerate() {
             if let (Some(log), Some(plant)) = (&mut recorded.plant, self.run.plant(index)) {
-                log.snapshot(plant, recorded.recording.trace.len());
+                log.snapshot(plant, recorded.stored.trace.len());
             }
         }
         if done && let (Some(recorded), Some(first)) = (&mut self.recorded, self.recordings.first_mut()) {
@@ -206,7 +206,7 @@ impl Simulation {
 
     fn recorded_count(&self) -> usize {
         let first = self.recordings.first().filter(|_| self.recorded.is_some());
-        first.map_or(0, |first| first.recording.trace.len())
+        first.map_or(0, |first| first.stored.trace.len())
     }
 
     /// Processes `count` more records of the recording.
@@ -222,7 +222,7 @@ impl Simulation {
     fn finish(&mut self) {
         let recorded_replies = self.replies.as_mut().map(take);
         for (index, recorded) in self.recordings.iter_mut().enumerate() {
-            let packets = &mut recorded.recording.packets;
+            let packets = &mut recorded.stored.packets;
             packets.finish();
             if let Some(bytes) = &recorded_replies {
                 replies::replace(bytes, &self.experiment, &self.run, index, packets);
@@ -234,7 +234,7 @@ impl Simulation {
     pub(crate) fn of(scenario: &Rc<Scenario>, experiment: &Rc<Experiment>) -> Self {
         let run = experiment.start();
         let recording = |(index, config): (usize, &Config)| ControllerRecording {
-            recording: Recording::default(),
+            stored: StoredRun::default(),
             changes: Changes::default(),
             timing: drivers::check(scenario, MAX_VIOLATIONS),
             plant: run.plant(index).map(PlantLog::new),

@@ -74,7 +74,7 @@ struct Job {
 impl Simulation {
     /// The summary. `host` is null without replies; `progress` is a name of [`Progress`].
     pub fn summary(&self) -> Result<JsValue, JsError> {
-        let digests = self.recordings.iter().map(|recorded| &recorded.recording.digest);
+        let digests = self.recordings.iter().map(|recorded| &recorded.stored.digest);
         let run = RunSummary::new(&self.experiment, &self.run, digests);
         let host = run.host.map(|counts| host(counts, &run.controllers));
         let mut controllers: Vec<Controller> =
@@ -110,15 +110,15 @@ fn host(counts: Counts, controllers: &[ControllerSummary]) -> Host {
 fn controller((summary, recorded): (ControllerSummary, &ControllerRecording)) -> Controller {
     Controller {
         address: summary.address,
-        digest: format!("{:016x}", recorded.recording.digest.value()),
-        records: recorded.recording.digest.records(),
-        edges: edges::count(&recorded.recording.trace),
+        digest: format!("{:016x}", recorded.stored.digest.value()),
+        records: recorded.stored.digest.records(),
+        edges: edges::count(&recorded.stored.trace),
         channels: summary.channels,
         positions: summary.positions,
         faults: Faults { bits: summary.faults.bits(), names: summary.faults.names().collect() },
         ticks_done: summary.ticks_done,
         state: summary.status.map(|status| status.state.name()),
-        changing: edges::changing(&recorded.recording.trace),
+        changing: edges::changing(&recorded.stored.trace),
         violations: recorded.timing.as_ref().map(TimingCheck::total),
     }
 }

@@ -39,7 +39,7 @@ impl Simulation {
     /// The part `d` of a link: the digests of all controllers.
     pub fn fingerprint(&self) -> String {
         RunFingerprint::of(
-            self.recordings.iter().map(|recorded| Fingerprint::of(&recorded.recording.trace)).collect(),
+            self.recordings.iter().map(|recorded| Fingerprint::of(&recorded.stored.trace)).collect(),
         )
         .emit()
     }
@@ -69,7 +69,7 @@ impl Simulation {
             }
         };
         for (check, recorded) in checks.iter_mut().zip(&self.recordings) {
-            recorded.recording.trace.iter().for_each(|record| check.record(*record));
+            recorded.stored.trace.iter().for_each(|record| check.record(*record));
         }
         match Verification::of(checks) {
             Verification::Same { edges } => RunComparison { same: true, edges, ..comparison },

@@ -136,7 +136,7 @@ impl<'a> StepTables<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use stepscope_peripheral::trace::steps;
     use stepscope_sim::ValidatedScenario;
 
@@ -145,7 +145,7 @@ mod tests {
         let validated =
             ValidatedScenario::from_json(r#"{"source":{"motion":{"engine":"segments","axes":[{}]}}}"#);
         let experiment = validated.experiment().expect("no problems");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         experiment.run(&mut recording);
         let actual = steps(&recording.trace, 0);
         let scenario = validated.scenario();

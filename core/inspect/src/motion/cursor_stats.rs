@@ -98,7 +98,7 @@ pub fn actual_acceleration(pulses: &Pulses<'_>, from_s: f64, to_s: f64) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use alloc::vec::Vec;
     use stepscope_peripheral::trace::{Step, steps};
     use stepscope_sim::Experiment;
@@ -120,14 +120,14 @@ mod tests {
 
     struct Ran {
         experiment: Experiment,
-        recording: Recording,
+        recording: StoredRun,
         steps: Vec<Step>,
     }
 
     fn run(source: &str) -> Ran {
         let experiment =
             Experiment::from_json(&alloc::format!(r#"{{"source":{source}}}"#)).expect("no problems");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         experiment.run(&mut recording);
         let steps = steps(&recording.trace, 0);
         Ran { experiment, recording, steps }

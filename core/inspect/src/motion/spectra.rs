@@ -69,7 +69,7 @@ impl Spectra {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use stepscope_peripheral::trace::steps;
     use stepscope_sim::Experiment;
 
@@ -79,7 +79,7 @@ mod tests {
             {"sine":{"amplitude":{"steps":800},"period_s":0.5,"periods":6}}]}]}}}"#;
         let scenario = Scenario::from_json(json).expect("reads");
         let experiment = Experiment::new(&scenario).expect("no problems");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         experiment.run(&mut recording);
         let actual_steps = steps(&recording.trace, 0);
         let list = experiment.segments().and_then(|all| all.lists().first());

@@ -240,11 +240,11 @@ mod tests {
     #[test]
     fn a_packet_is_decoded_to_bits() {
         use crate::packets::{line_decoder::LineDecoder, packet_table::PacketTable};
-        use crate::trace::stored_run::Recording;
+        use crate::trace::stored_run::StoredRun;
         use stepscope_sim::Experiment;
 
         let experiment = Experiment::from_json("{}").expect("the default motion");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         let run = experiment.run(&mut recording);
         let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
         let first = table.row(0).expect("there are packets");

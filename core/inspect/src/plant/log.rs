@@ -262,7 +262,7 @@ impl Observer for Watched<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use stepscope_peripheral::units::Instant;
     use stepscope_sim::{Experiment, RunLimits};
 
@@ -270,7 +270,7 @@ mod tests {
     fn curves_end_at_the_final_position() {
         let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("it is valid");
         let mut run = experiment.start();
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         let mut log = PlantLog::new(run.plant(0).expect("it has one"));
         while !run.advance_observed(
             RunLimits { cycle: Instant(run.cycles().0 + 100_000), ..RunLimits::default() },

@@ -10,8 +10,8 @@
 //!
 //! ```
 //! use stepscope_inspect::recording::{alignment::{Alignment, Side}, tolerance::Tolerance};
-//! # use stepscope_inspect::trace::stored_run::Recording;
-//! # let mut recording = Recording::default();
+//! # use stepscope_inspect::trace::stored_run::StoredRun;
+//! # let mut recording = StoredRun::default();
 //! # stepscope_sim::Experiment::from_json("{}").expect("the default motion").run(&mut recording);
 //! # let plan = stepscope_peripheral::trace::steps(&recording.trace, 0);
 //! // The recorded steps are those of the plan without one.

@@ -133,11 +133,11 @@ mod tests {
             events::{Events, Kind},
             tolerance::Tolerance,
         };
-        use crate::trace::stored_run::Recording;
+        use crate::trace::stored_run::StoredRun;
         use stepscope_sim::Experiment;
 
         // The bytes of a run compared with themselves.
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         Experiment::from_json("{}").expect("the default motion").run(&mut recording);
         let bytes = Events::of_records(&recording.trace, 16_000_000, Kind::Bytes, 0, 115_200);
         let found = bytes.compare(&bytes, None, Tolerance::ZERO).expect("there are bytes");

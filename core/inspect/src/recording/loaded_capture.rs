@@ -10,7 +10,7 @@ mod tests;
 pub use align::Misaligned;
 
 use super::open_options::{DEFAULT_CLOCK_HZ, OpenError, OpenOptions};
-use super::report::{ChannelReport, Report, Survey, steps};
+use super::report::{ChangedSignals, ChannelReport, Report, steps};
 use super::{alignment::ExactTimes, events::Events, overview::Overview, remedy::Note};
 use crate::motion::curves::{Actual, Window};
 use crate::trace::timing::TimingCheck;
@@ -88,8 +88,8 @@ impl LoadedCapture {
         let (clock_hz, channels) = (loaded.clock_hz, loaded.channels);
         let mut report = report.unwrap_or_else(|| {
             let all = loaded.records.iter().copied();
-            let changing = Survey::of(all.clone()).changing;
-            Report::of_all(all, changing, clock_hz, channels, lines)
+            let changed_mask = ChangedSignals::of(all.clone()).changed_mask;
+            Report::from_iterator(all, changed_mask, clock_hz, channels, lines)
         });
         if let Some(exact) = exact.filter(|exact| have_same_steps(exact, &report.channels)) {
             report.channels = exact;
@@ -115,15 +115,16 @@ impl LoadedCapture {
         }
         let all = Records::new(capture, &map, base, clock_hz).map_err(OpenError::TooLate)?;
         let mut passed = all.clone();
-        let survey = Survey::of(passed.by_ref());
+        let signals = ChangedSignals::of(passed.by_ref());
         loaded.note_rounding(passed.rounding, 0);
-        let mut report = Report::of_all(all, survey.changing, clock_hz, loaded.channels, options.lines()?);
+        let mut report =
+            Report::from_iterator(all, signals.changed_mask, clock_hz, loaded.channels, options.lines()?);
         if let Some(exact) = loaded.exact_channels(capture, &map, base, options)
             && have_same_steps(&exact, &report.channels)
         {
             report.channels = exact;
         }
-        loaded.take_part(capture, &map, base, part, survey.count)?;
+        loaded.take_part(capture, &map, base, part, signals.records)?;
         loaded.set_report(report, &map)?;
         Ok(loaded)
     }

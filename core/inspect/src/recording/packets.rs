@@ -203,12 +203,12 @@ impl<'a> Line<'a> {
 mod tests {
     use super::*;
     use crate::recording::serial::{DecodedByte, DecodedLine};
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use stepscope_sim::Experiment;
 
-    fn run(json: &str) -> (Recording, u8) {
+    fn run(json: &str) -> (StoredRun, u8) {
         let experiment = Experiment::from_json(json).expect("no problems");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         experiment.run(&mut recording);
         recording.packets.finish();
         (recording, experiment.config().channels())
@@ -221,7 +221,7 @@ mod tests {
             r#"{"bus":{"channels":3},"line":{"protocol":"framed","baud":250000},"source":{"motion":{"axes":[{},{},{}]}}}"#,
         ] {
             let (recording, channels) = run(json);
-            let report = Report::of(&recording.trace, 16_000_000, channels, None);
+            let report = Report::from_records(&recording.trace, 16_000_000, channels, None);
             let packets = Packets::of(&report, 16_000_000, channels, false);
             let log = &recording.packets;
             assert_eq!(packets.rows.len(), log.rows().len(), "{json}");
@@ -243,7 +243,7 @@ mod tests {
         let (recording, channels) = run(
             r#"{"bus":{"channels":2},"line":{"address":7},"source":{"packets":{"packets":["078a05","070203"]}}}"#,
         );
-        let report = Report::of(&recording.trace, 16_000_000, channels, None);
+        let report = Report::from_records(&recording.trace, 16_000_000, channels, None);
         let packets = Packets::of(&report, 16_000_000, channels, true);
         let rows: Vec<_> =
             packets.rows.iter().map(|row| (row.kind, row.bytes.as_slice(), row.meaning.as_str())).collect();
@@ -252,7 +252,7 @@ mod tests {
 
         // Of the replies of a framed run one is spoiled, one is cut off, and a stop bit is low.
         let (recording, _) = run(r#"{"line":{"protocol":"framed"}}"#);
-        let mut report = Report::of(&recording.trace, 16_000_000, 1, None);
+        let mut report = Report::from_records(&recording.trace, 16_000_000, 1, None);
         let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it has TX");
         tx.decoded.bytes[3].byte ^= 0x40;
         tx.decoded.bytes.pop();

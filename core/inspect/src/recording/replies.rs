@@ -94,7 +94,7 @@ fn parse_head(bytes: &[u8]) -> Option<([u64; 3], &[u8])> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use crate::{packets::packet_table::PacketTable, recording::report::Report};
     use stepscope_sim::Experiment;
 
@@ -102,12 +102,12 @@ mod tests {
     fn recorded_replies_are_rows_with_their_turnaround() {
         let json = r#"{"line":{"protocol":"framed"}}"#;
         let experiment = Experiment::from_json(json).expect("no problems");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         let run = experiment.run(&mut recording);
         recording.packets.finish();
         let simulated = recording.packets.clone();
         // The device replies 500 cycles later than the model, and one reply is damaged.
-        let mut report = Report::of(&recording.trace, 16_000_000, 1, None);
+        let mut report = Report::from_records(&recording.trace, 16_000_000, 1, None);
         let tx = report.lines.iter_mut().find(|line| line.name == "TX").expect("it has TX");
         tx.decoded.bytes.iter_mut().for_each(|byte| byte.start = Instant(byte.start.0 + 500));
         tx.decoded.bytes[3].byte ^= 0x40;
@@ -147,13 +147,13 @@ mod tests {
     fn replies_belong_to_their_address_or_the_last_addressed_controller() {
         let json = r#"{"line":{"protocol":"framed","address":3},"controllers":[{"address":7,"axes":[{"moves":[{"cosine":{"distance":{"steps":200}}}]}]}]}"#;
         let experiment = Experiment::from_json(json).expect("no problems");
-        let mut recordings = [Recording::default(), Recording::default()];
+        let mut recordings = [StoredRun::default(), StoredRun::default()];
         let run = experiment.run_each(&mut recordings);
         recordings.iter_mut().for_each(|one| one.packets.finish());
         let simulated = recordings.each_ref().map(|one| one.packets.clone());
         // One analyzer at the line: TX is low where one of both sends.
-        let mut report = Report::of(&recordings[0].trace, 16_000_000, 1, None);
-        let others = Report::of(&recordings[1].trace, 16_000_000, 1, None).lines;
+        let mut report = Report::from_records(&recordings[0].trace, 16_000_000, 1, None);
+        let others = Report::from_records(&recordings[1].trace, 16_000_000, 1, None).lines;
         let others = others.into_iter().find(|line| line.name == "TX").expect("it has TX");
         let line = report.lines.iter_mut().find(|line| line.name == "TX").expect("it has TX");
         let first = others.decoded.bytes[0].start;

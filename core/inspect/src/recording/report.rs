@@ -1,13 +1,14 @@
 //! The report of a recording: figures of each channel, and its lines.
 
 use super::serial::{
-    DecodedByte, LineOptions, MEASURED_EDGES, decode_records, edges, is_text_of_seven, parity_of_seven,
+    DecodedByte, LineOptions, MEASURED_EDGES, decode_records, edges, looks_like_seven_bit_text,
+    seven_bit_parity,
 };
 use super::serial::{DecodedLine, Guess, Measured, guess, line_name};
 use super::{figures::StepFigures, remedy::Remedy};
 use alloc::{format, string::String, string::ToString, vec::Vec};
 use serde::Serialize;
-use stepscope_capture::uart::{Edge, Format, NoRate, estimate};
+use stepscope_capture::uart::{Edge, Estimate, Format, NoRate, estimate};
 use stepscope_peripheral::signal::{Levels, Record};
 use stepscope_peripheral::trace::Step;
 
@@ -40,50 +41,54 @@ pub struct LineReport {
     pub guess: Guess,
 }
 
-/// Number of records, and the signals that change.
+/// The signals that change in some records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Survey {
-    pub count: usize,
-    pub changing: u64,
+pub struct ChangedSignals {
+    /// Number of records.
+    pub records: usize,
+    /// A bit for each signal that differs from the first record.
+    pub changed_mask: u64,
 }
 
-impl Survey {
-    /// Counts records.
+impl ChangedSignals {
+    /// Compares all records with the first one.
     pub fn of(records: impl IntoIterator<Item = Record>) -> Self {
         let mut records = records.into_iter();
         let Some(first) = records.next() else { return Self::default() };
-        let found = Self { count: 1, changing: 0 };
-        records.fold(found, |Self { count, changing }, record| Self {
-            count: count + 1,
-            changing: changing | (record.levels.0 ^ first.levels.0),
+        let found = Self { records: 1, changed_mask: 0 };
+        records.fold(found, |found, record| Self {
+            records: found.records + 1,
+            changed_mask: found.changed_mask | (record.levels.0 ^ first.levels.0),
         })
     }
 }
 
 impl Report {
-    /// Decodes lines as 8N1 at `baud`, or at the measured rate.
-    pub fn of(records: &[Record], clock_hz: u32, channels: u8, baud: Option<u32>) -> Self {
+    /// Reports channels, and decodes lines as 8N1 at `baud`, or at the measured rate.
+    pub fn from_records(records: &[Record], clock_hz: u32, channels: u8, baud: Option<u32>) -> Self {
         let all = records.iter().copied();
         let options = LineOptions { baud, ..LineOptions::default() };
-        Self::of_all(all.clone(), Survey::of(all).changing, clock_hz, channels, options)
+        let changed_mask = ChangedSignals::of(all.clone()).changed_mask;
+        Self::from_iterator(all, changed_mask, clock_hz, channels, options)
     }
 
-    /// As [`Self::of`], for records that are iterated several times and not stored; `changing` comes from [`Survey`].
-    pub fn of_all(
+    /// Does not store the records, but iterates over them once per signal of `changed_mask` ([`ChangedSignals`]).
+    pub fn from_iterator(
         records: impl Iterator<Item = Record> + Clone,
-        changing: u64,
+        changed_mask: u64,
         clock_hz: u32,
         channels: u8,
         options: LineOptions,
     ) -> Self {
-        let of = |channel| {
+        let channel_report = |channel| {
             let figures = StepFigures::of(steps(records.clone(), channel), clock_hz)?;
             Some(ChannelReport { channel, figures })
         };
         let line = |mask| LineReport::of(records.clone(), mask, clock_hz, options);
-        let lines = [Levels::RX, Levels::TX].into_iter().filter(|mask| changing & mask != 0);
+        let lines = [Levels::RX, Levels::TX].into_iter().filter(|mask| changed_mask & mask != 0);
+        let channels = (0..channels).filter(|channel| (changed_mask >> channel) & 1 != 0);
         Self {
-            channels: (0..channels).filter(|channel| changing >> channel & 1 != 0).filter_map(of).collect(),
+            channels: channels.filter_map(channel_report).collect(),
             lines: lines.filter_map(line).collect(),
         }
     }
@@ -103,7 +108,7 @@ impl Report {
     }
 }
 
-/// As [`stepscope_peripheral::trace::steps_in`], for iterated records.
+/// Like [`stepscope_peripheral::trace::steps_in`], but streams the records.
 pub(super) fn steps(records: impl Iterator<Item = Record>, channel: u8) -> impl Iterator<Item = Step> {
     let mask = 1_u16 << (channel & 15);
     // A level that is high from the first record on has not risen.
@@ -128,8 +133,8 @@ fn no_rate(why: &NoRate, line: &'static str) -> (String, Vec<Remedy>) {
         return (format!("its pulses fit several bit rates ({})", rates.join(", ")), [Remedy::Baud].into());
     }
     if *why == NoRate::TooCoarse {
-        let text = "its bits last fewer than 3 cycles of the recording, so its bit rate cannot be measured; use at least 4 samples per \
-                    bit, or export times with more decimal places";
+        let text = "its bits last fewer than 3 cycles of the recording, so its bit rate cannot be measured; use at least 4 \
+                    samples per bit (3 is the minimum), or export times with more decimal places";
         return (text.into(), [Remedy::Baud].into());
     }
     let reason = likely_reason(why, line);
@@ -158,12 +163,13 @@ fn likely_reason(why: &NoRate, line: &'static str) -> Option<(String, Remedy)> {
 }
 
 /// Detects 7-bit bytes that were decoded with eight.
-fn seven_bits(bytes: &[DecodedByte]) -> Option<(String, Option<Remedy>)> {
-    if is_text_of_seven(bytes) {
-        let text = "all bytes look like text of 7 data bits with 2 stop bits, or 1 and pauses";
+fn seven_bit_hint(bytes: &[DecodedByte]) -> Option<(String, Option<Remedy>)> {
+    if looks_like_seven_bit_text(bytes) {
+        let text =
+            "all bytes look like 7-bit text with 2 stop bits, or with 1 stop bit and a pause after each byte";
         return Some((text.into(), Some(Remedy::Format("7N2".into()))));
     }
-    parity_of_seven(bytes).map(|parity| {
+    seven_bit_parity(bytes).map(|parity| {
         let name = if parity == 'E' { "even" } else { "odd" };
         let text = format!("all bytes look like 7 data bits with {name} parity");
         (text, Some(Remedy::Format(format!("7{parity}1"))))
@@ -175,43 +181,51 @@ impl LineReport {
         records: impl Iterator<Item = Record> + Clone,
         mask: u64,
         clock_hz: u32,
-        LineOptions { baud, format }: LineOptions,
+        options: LineOptions,
     ) -> Option<Self> {
-        let hz = f64::from(clock_hz);
+        let (hz, name) = (f64::from(clock_hz), line_name(mask));
         let first: Vec<Edge> = edges(records.clone(), mask).take(MEASURED_EDGES).collect();
-        let found = estimate(&first, format, Some(hz));
+        let found = estimate(&first, options.format, Some(hz));
         let measured = found.as_ref().ok().map(|found| Measured::of(*found, clock_hz));
-        let mut line =
-            Self { name: line_name(mask), measured, format: format.to_string(), ..Self::default() };
-        let bit = match (baud, &found) {
+        let mut line = Self { name, measured, format: options.format.to_string(), ..Self::default() };
+        let cycles_per_bit = match (options.baud, &found) {
             (Some(baud), _) => hz / f64::from(baud.max(1)),
             (None, Ok(found)) => found.bit,
             (None, Err(NoRate::NoEdges)) => return None,
             (None, Err(why)) => {
-                let (problem, remedies) = no_rate(why, line.name);
-                (line.problem, line.remedies) = (Some(problem), remedies);
-                return Some(line);
+                let (problem, remedies) = no_rate(why, name);
+                return Some(Self { problem: Some(problem), remedies, ..line });
             }
         };
-        line.baud = baud.or(measured.map(Measured::rounded)).unwrap_or_default();
-        line.decoded = decode_records(records, mask, bit, format);
-        line.guess = guess(&line.decoded.bytes, bit as u64);
-        let DecodedLine { bytes, framing_errors, parity_errors } = &line.decoded;
-        let wrong = framing_errors.len() + parity_errors.len();
-        let hint = match found {
-            Err(why) if wrong * 8 > bytes.len() || why == NoRate::Inverted => {
-                likely_reason(&why, line.name).map(|(text, remedy)| (text, Some(remedy)))
-            }
-            Ok(found) if wrong * 8 > bytes.len() && found.usual != baud => {
-                Some((format!("its pulses look like {} baud", libm::round(hz / found.measured)), None))
-            }
-            _ if format == Format::default() => seven_bits(bytes),
-            _ => None,
-        };
-        if let Some((text, remedy)) = hint {
+        line.baud = options.baud.or(measured.map(Measured::rounded)).unwrap_or_default();
+        line.decoded = decode_records(records, mask, cycles_per_bit, options.format);
+        line.guess = guess(&line.decoded.bytes, cycles_per_bit as u64);
+        if let Some((text, remedy)) = line.hint(found, options) {
             (line.hint, line.remedies) = (Some(text), remedy.into_iter().collect());
         }
         Some(line)
+    }
+
+    /// Why the decoded bytes may be wrong, and what helps. `found` is the measured rate.
+    fn hint(
+        &self,
+        found: Result<Estimate, NoRate>,
+        LineOptions { baud, format }: LineOptions,
+    ) -> Option<(String, Option<Remedy>)> {
+        let DecodedLine { bytes, framing_errors, parity_errors } = &self.decoded;
+        let has_many_errors = (framing_errors.len() + parity_errors.len()) * 8 > bytes.len();
+        match found {
+            Err(why) if has_many_errors || why == NoRate::Inverted => {
+                likely_reason(&why, self.name).map(|(text, remedy)| (text, Some(remedy)))
+            }
+            // Without `baud`, the line is decoded at the rate that was found.
+            Ok(found) if has_many_errors && baud.is_some() && found.usual != baud => {
+                let measured_baud = self.measured.map_or(0.0, |measured| libm::round(measured.baud));
+                Some((format!("its pulses look like {measured_baud} baud"), None))
+            }
+            _ if format == Format::default() => seven_bit_hint(bytes),
+            _ => None,
+        }
     }
 
     /// Decoded bytes on a line: [`Levels::RX`] or [`Levels::TX`].
@@ -230,18 +244,17 @@ impl LineReport {
         }
         let errors = |kind: &str, count: usize| match count {
             0 => String::new(),
-            1 => format!(", 1 {kind} error"),
-            more => format!(", {more} {kind} errors"),
+            _ => format!(", {}", counted(count as u64, kind)),
         };
         let format = if self.format == EIGHT_N_ONE { String::new() } else { format!(" {}", self.format) };
         let hint = self.hint.as_ref().map_or_else(String::new, |hint| format!("; {hint}"));
         format!(
-            "{}: {} baud{format}{measured}, {} bytes{}{}, {}{hint}",
+            "{}: {} baud{format}{measured}, {}{}{}, {}{hint}",
             self.name,
             self.baud,
-            self.decoded.bytes.len(),
-            errors("framing", self.decoded.framing_errors.len()),
-            errors("parity", self.decoded.parity_errors.len()),
+            counted(self.decoded.bytes.len() as u64, "byte"),
+            errors("framing error", self.decoded.framing_errors.len()),
+            errors("parity error", self.decoded.parity_errors.len()),
             self.guess_text()
         )
     }
@@ -250,35 +263,63 @@ impl LineReport {
     pub fn guess_text(&self) -> String {
         match self.guess {
             Guess::Framed { address, channels, good, bad } => {
-                let channels =
-                    channels.map_or_else(String::new, |channels| format!(" of {channels} channels"));
-                format!("{good} frames for address {address}{channels}, {bad} broken")
+                let channels = channels.map_or_else(String::new, |channels| {
+                    format!(" of {}", counted(channels.into(), "channel"))
+                });
+                format!("{} for address {address}{channels}, {bad} broken", counted(good.into(), "frame"))
             }
             Guess::Raw { length, bad, .. } => {
-                let s = if length == 1 { "" } else { "s" };
                 let others = if bad == 0 { String::new() } else { format!(", {bad} of another length") };
-                format!("raw packets of {length} byte{s}{others}")
+                format!("raw packets of {}{others}", counted(length.into(), "byte"))
             }
             Guess::Other => "no known packets".into(),
         }
     }
 }
 
+/// Such as `1 byte`, `2 bytes`.
+fn counted(count: u64, singular: &str) -> String {
+    format!("{count} {singular}{}", if count == 1 { "" } else { "s" })
+}
+
 #[cfg(test)]
 mod tests {
-    #[test]
-    fn the_report_of_a_run() {
-        use crate::recording::report::Report;
-        use crate::trace::stored_run::Recording;
-        use stepscope_sim::Experiment;
+    use super::*;
+    use crate::trace::stored_run::StoredRun;
+    use stepscope_peripheral::units::Instant;
+    use stepscope_sim::Experiment;
 
-        let mut recording = Recording::default();
+    #[test]
+    fn reports_the_line_and_the_channel_of_a_run() {
+        let mut recording = StoredRun::default();
         Experiment::from_json("{}").expect("the default motion").run(&mut recording);
-        let report = Report::of(&recording.trace, 16_000_000, 1, None);
+        let report = Report::from_records(&recording.trace, 16_000_000, 1, None);
         assert_eq!(report.channels.len(), 1);
         assert_eq!(
             report.lines[0].to_text(),
             "RX: 115200 baud (115187 measured), 200 bytes, raw packets of 1 byte"
         );
+    }
+
+    #[test]
+    fn suggests_a_rate_only_if_another_was_used() {
+        let decoded = DecodedLine { framing_errors: Vec::from([Instant(0)]), ..DecodedLine::default() };
+        let found = Estimate { bit: 100.0, measured: 100.0, usual: Some(9600) };
+        let measured = Some(Measured::of(found, 960_000));
+        let line = LineReport { decoded, measured, ..LineReport::default() };
+        let hint = |baud| line.hint(Ok(found), LineOptions { baud, ..LineOptions::default() });
+        assert_eq!([None, Some(9600)].map(hint), [None, None]);
+        assert_eq!(hint(Some(4800)), Some(("its pulses look like 9600 baud".into(), None)));
+    }
+
+    #[test]
+    fn counts_one_byte_frame_and_error_in_the_singular() {
+        let bytes = Vec::from([DecodedByte { start: Instant(0), byte: 5 }]);
+        let decoded =
+            DecodedLine { bytes, framing_errors: Vec::from([Instant(0)]), ..DecodedLine::default() };
+        let guess = Guess::Framed { address: 3, channels: Some(1), good: 1, bad: 0 };
+        let line = LineReport { guess, ..LineReport::of_decoded(Levels::RX, decoded, 1000, 100) };
+        let expected = "RX: 100 baud, 1 byte, 1 framing error, 1 frame for address 3 of 1 channel, 0 broken";
+        assert_eq!(line.to_text(), expected);
     }
 }

@@ -274,12 +274,12 @@ pub fn end_of(decoded: &DecodedLine, bit_cycles: u64) -> Option<Instant> {
 mod tests {
     use super::*;
     use crate::recording::serial::{decode_line, guess};
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use stepscope_peripheral::signal::Levels;
     use stepscope_sim::Experiment;
 
-    fn recorded(json: &str) -> Recording {
-        let mut recording = Recording::default();
+    fn recorded(json: &str) -> StoredRun {
+        let mut recording = StoredRun::default();
         Experiment::from_json(json).expect("no problems").run(&mut recording);
         recording
     }
@@ -299,7 +299,7 @@ mod tests {
             let request = StepRequest { clock_hz: 16_000_000, channels: 2, within_cycles: 0 };
             let reproduced = of_steps(&trace, &request).expect("steps");
             assert_eq!(reproduced.greatest_error_cycles, 0);
-            let mut again = Recording::default();
+            let mut again = StoredRun::default();
             Experiment::new(&reproduced.scenario).expect("no problems").run(&mut again);
             for channel in 0..2 {
                 let shifted = |step: &Step| Step { cycle: step.cycle + reproduced.later_cycles, ..*step };
@@ -322,7 +322,7 @@ mod tests {
             let request =
                 ByteRequest { clock_hz, baud: 115_200, guess: guess(&decoded.bytes, 139), channels: 1 };
             let reproduced = of_bytes(&decoded, &request, None).expect("bytes");
-            let mut again = Recording::default();
+            let mut again = StoredRun::default();
             Experiment::new(&reproduced.scenario).expect("no problems").run(&mut again);
             assert_eq!(steps(&again.trace, 0), steps(&recording.trace, 0), "{json}");
             assert!(reproduced.greatest_error_cycles <= 1, "{reproduced:?}");

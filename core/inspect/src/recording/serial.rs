@@ -57,7 +57,7 @@ const FORMAT_WORDS: usize = 8;
 const PARITY_WORDS: u32 = 6;
 
 /// The parity of 7 data bits: `E` or `O`; `None` without one, or with too few different bytes.
-pub(super) fn parity_of_seven(bytes: &[DecodedByte]) -> Option<char> {
+pub(super) fn seven_bit_parity(bytes: &[DecodedByte]) -> Option<char> {
     let mut seen = [0_u64; 4];
     let (mut even, mut odd) = (true, true);
     for decoded in bytes {
@@ -73,8 +73,8 @@ pub(super) fn parity_of_seven(bytes: &[DecodedByte]) -> Option<char> {
     if even { Some('E') } else { odd.then_some('O') }
 }
 
-/// Whether bytes look like 7-bit text with a stop bit or pause as the eighth bit.
-pub(super) fn is_text_of_seven(bytes: &[DecodedByte]) -> bool {
+/// Whether all bytes look like 7-bit text with a stop bit or pause as the eighth bit.
+pub(super) fn looks_like_seven_bit_text(bytes: &[DecodedByte]) -> bool {
     let is_text = |decoded: &&DecodedByte| matches!(decoded.byte & 0x7f, b' '..=b'~' | b'\r' | b'\n' | b'\t');
     bytes.len() >= FORMAT_WORDS
         && bytes.iter().all(|decoded| decoded.byte & 0x80 != 0)
@@ -271,17 +271,17 @@ mod tests {
             bytes.iter().map(|byte| DecodedByte { start: Instant(0), byte: *byte }).collect()
         };
         let top = |text: &[u8]| decoded(&text.iter().map(|byte| byte | 0x80).collect::<Vec<_>>());
-        assert!(is_text_of_seven(&top(b"G1 X10\r\n")));
-        assert!(!is_text_of_seven(&top(b"G1 X10\n")));
-        assert!(!is_text_of_seven(&top(b"AAAAAAAAAA")));
-        assert!(!is_text_of_seven(&decoded(b"G1 X10\r\n")));
-        assert!(!is_text_of_seven(&top(&[1, 5, 1, 5, 1, 5, 1, 5, 1])));
+        assert!(looks_like_seven_bit_text(&top(b"G1 X10\r\n")));
+        assert!(!looks_like_seven_bit_text(&top(b"G1 X10\n")));
+        assert!(!looks_like_seven_bit_text(&top(b"AAAAAAAAAA")));
+        assert!(!looks_like_seven_bit_text(&decoded(b"G1 X10\r\n")));
+        assert!(!looks_like_seven_bit_text(&top(&[1, 5, 1, 5, 1, 5, 1, 5, 1])));
         let even = |text: &[u8]| -> Vec<DecodedByte> {
             let parity = |byte: &u8| if byte.count_ones() % 2 == 1 { byte | 0x80 } else { *byte };
             decoded(&text.iter().map(parity).collect::<Vec<_>>())
         };
-        assert_eq!(parity_of_seven(&even(b"G1 X10\r\n")), Some('E'));
-        assert_eq!(parity_of_seven(&even(b"ABABABABAB")), None);
+        assert_eq!(seven_bit_parity(&even(b"G1 X10\r\n")), Some('E'));
+        assert_eq!(seven_bit_parity(&even(b"ABABABABAB")), None);
     }
 
     #[test]

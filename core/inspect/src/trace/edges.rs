@@ -168,13 +168,13 @@ mod tests {
 
     #[test]
     fn the_first_pulse_of_a_run_has_the_default_width() {
-        use crate::trace::stored_run::Recording;
+        use crate::trace::stored_run::StoredRun;
         use crate::trace::{changes::Changes, edges::Signals};
         use stepscope_peripheral::trace::steps;
         use stepscope_sim::Experiment;
 
         let experiment = Experiment::from_json("{}").expect("the default motion");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         experiment.run(&mut recording);
         let mut changes = Changes::default();
         changes.extend(&recording.trace);

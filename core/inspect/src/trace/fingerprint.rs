@@ -260,11 +260,11 @@ mod tests {
 
     #[test]
     fn equal_traces_have_equal_fingerprints() {
-        use crate::trace::stored_run::Recording;
+        use crate::trace::stored_run::StoredRun;
         use stepscope_sim::Experiment;
 
         let experiment = Experiment::from_json("{}").expect("the default motion");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         experiment.run(&mut recording);
         let sent = Fingerprint::of(&recording.trace);
         let mut check = FingerprintCheck::with(&sent);

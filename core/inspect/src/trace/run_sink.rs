@@ -1,24 +1,25 @@
 //! A stored run together with the timing check of its pulses.
 
-use crate::{trace::stored_run::Recording, trace::timing::TimingCheck};
+use crate::{trace::stored_run::StoredRun, trace::timing::TimingCheck};
 use stepscope_peripheral::signal::{Event, Record, Sink};
 use stepscope_peripheral::units::Instant;
 
-/// Stores a run and checks its timing in one pass.
+/// Stores a run and checks its timing in one pass. Without a check, [`Option`] is a sink that ignores records.
 #[derive(Clone, Default)]
 pub struct RunSink {
-    pub recording: Recording,
+    pub stored: StoredRun,
     pub timing: Option<TimingCheck>,
 }
 
 impl Sink for RunSink {
     fn record(&mut self, record: Record) {
-        self.recording.record(record);
+        self.stored.record(record);
         self.timing.record(record);
     }
 
     fn event(&mut self, at: Instant, event: Event) {
-        self.recording.event(at, event);
+        // The timing check needs only records.
+        self.stored.event(at, event);
     }
 }
 
@@ -33,6 +34,6 @@ mod tests {
         let timing = TimingCheck::new(&A4988.rules, experiment.config().clock_hz(), 10);
         let mut sink = RunSink { timing: Some(timing), ..RunSink::default() };
         experiment.run(&mut sink);
-        assert!(sink.recording.digest.records() > 6400);
+        assert!(sink.stored.digest.records() > 6400);
     }
 }

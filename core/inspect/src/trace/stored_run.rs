@@ -1,10 +1,10 @@
 //! A run in memory, as the views need it: records, digest and packets.
 //!
 //! ```
-//! use stepscope_inspect::trace::stored_run::Recording;
+//! use stepscope_inspect::trace::stored_run::StoredRun;
 //! use stepscope_sim::Experiment;
 //!
-//! let mut recording = Recording::default();
+//! let mut recording = StoredRun::default();
 //! Experiment::from_json("{}").expect("the default motion").run(&mut recording);
 //! assert_eq!(recording.digest.records(), recording.trace.len() as u64);
 //! ```
@@ -23,13 +23,13 @@ pub const RECORDS_PER_CHECK: u64 = 1 << 16;
 
 /// The stored run of one controller.
 #[derive(Clone, Default)]
-pub struct Recording {
+pub struct StoredRun {
     pub trace: Vec<Record>,
     pub digest: Digest,
     pub packets: PacketLog,
 }
 
-impl Sink for Recording {
+impl Sink for StoredRun {
     fn record(&mut self, record: Record) {
         self.trace.push(record);
         self.digest.record(record);
@@ -40,7 +40,7 @@ impl Sink for Recording {
     }
 }
 
-impl Recording {
+impl StoredRun {
     /// Start of the first tick: time 0 of a motion.
     pub fn first_tick(&self) -> Option<Instant> {
         self.packets.ticks().first().map(|tick| tick.start)
@@ -69,7 +69,7 @@ impl fmt::Display for TooLong {
 impl core::error::Error for TooLong {}
 
 /// Runs an experiment and stores the traces of its first `controllers` controllers.
-pub fn record_run(experiment: &Experiment, controllers: usize) -> Result<(Run, Vec<Recording>), TooLong> {
+pub fn record_run(experiment: &Experiment, controllers: usize) -> Result<(Run, Vec<StoredRun>), TooLong> {
     record_within(experiment, controllers, MAX_RECORDS)
 }
 
@@ -77,13 +77,13 @@ fn record_within(
     experiment: &Experiment,
     controllers: usize,
     max_records: u64,
-) -> Result<(Run, Vec<Recording>), TooLong> {
+) -> Result<(Run, Vec<StoredRun>), TooLong> {
     // The steps of segments are known in advance; other edges are counted during the run.
     let segments = experiment.segments();
     if let Some(steps) = segments.map(|segments| segments.steps()).filter(|steps| *steps > max_records / 2) {
         return Err(TooLong::Steps(steps));
     }
-    let mut recordings: Vec<Recording> = (0..controllers).map(|_| Recording::default()).collect();
+    let mut recordings: Vec<StoredRun> = (0..controllers).map(|_| StoredRun::default()).collect();
     let mut run = experiment.start();
     while !run.advance_each(RECORDS_PER_CHECK, &mut recordings) {
         if segments.is_none() {
@@ -94,11 +94,11 @@ fn record_within(
 }
 
 /// Fails if the recordings exceed [`MAX_RECORDS`].
-pub fn check_records(recordings: &[Recording]) -> Result<(), TooLong> {
+pub fn check_records(recordings: &[StoredRun]) -> Result<(), TooLong> {
     check_within(recordings, MAX_RECORDS)
 }
 
-fn check_within(recordings: &[Recording], max_records: u64) -> Result<(), TooLong> {
+fn check_within(recordings: &[StoredRun], max_records: u64) -> Result<(), TooLong> {
     let records: u64 = recordings.iter().map(|recording| recording.trace.len() as u64).sum();
     if records > max_records { Err(TooLong::Edges) } else { Ok(()) }
 }
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn stored_records_equal_those_of_a_run() {
         let experiment = Experiment::from_json("{}").expect("it runs");
-        let mut expected = Recording::default();
+        let mut expected = StoredRun::default();
         let run = experiment.run(&mut expected);
         let (stored, recordings) = record_run(&experiment, 1).expect("it is short");
         assert_eq!(recordings.first().map(|found| &found.trace), Some(&expected.trace));

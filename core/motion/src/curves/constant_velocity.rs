@@ -1,47 +1,49 @@
-//! Constant rate and dwell (DESIGN B6).
+//! Moves at a constant velocity, and dwells (DESIGN B6).
 
-use crate::timing::{CycleTime, Double, Exact, IsDueBefore, Runs, Schedule, one_run};
+use crate::timing::{CycleTime, Exact, F106, IsDueBefore, Runs, Schedule, one_run};
 use crate::{Curve, Peaks, curves::curve::signed};
 use alloc::{boxed::Box, string::String};
 
 /// A move at a constant speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Constant {
+pub struct ConstantVelocity {
     steps: i64,
     speed: f64,
-    exact_speed: Double,
+    /// The decimal of the scenario, without rounding.
+    speed_exact: F106,
     duration_s: f64,
 }
 
-impl Constant {
+impl ConstantVelocity {
     /// `steps` (left negative) at `speed` > 0 steps/s.
     pub fn new(steps: i64, speed: f64) -> Self {
-        Self::from_exact(steps, Double::decimal(speed))
+        Self::from_exact(steps, F106::decimal(speed))
     }
 
-    pub(crate) fn from_exact(steps: i64, exact_speed: Double) -> Self {
-        let speed = exact_speed.high;
-        Self { steps, speed, exact_speed, duration_s: steps.unsigned_abs() as f64 / speed }
+    pub(crate) fn from_exact(steps: i64, speed_exact: F106) -> Self {
+        let speed = speed_exact.high;
+        Self { steps, speed, speed_exact, duration_s: steps.unsigned_abs() as f64 / speed }
     }
 }
 
-impl Schedule for Constant {
-    fn length(&self, clock_hz: u32) -> CycleTime {
-        CycleTime::of(Double::from(self.steps.unsigned_abs()) / self.exact_speed * f64::from(clock_hz))
+impl Schedule for ConstantVelocity {
+    fn duration(&self, clock_hz: u32) -> CycleTime {
+        CycleTime::of(F106::from(self.steps.unsigned_abs()) / self.speed_exact * f64::from(clock_hz))
     }
 
     fn runs(&self, clock_hz: u32) -> Runs<'_> {
         let cycles_per_step = f64::from(clock_hz) / self.speed;
-        one_run(self, clock_hz, move |step| (step + 0.5) * cycles_per_step)
+        // Step k (from 1) is due at k - 1/2 steps; the index of `one_run` is k - 1.
+        one_run(self, clock_hz, move |index| (index + 0.5) * cycles_per_step)
     }
 
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
-        let cycles_per_step = Double::from(f64::from(clock_hz)) / self.exact_speed;
+        let cycles_per_step = F106::from(f64::from(clock_hz)) / self.speed_exact;
         Box::new(move |k, since| since > cycles_per_step * (k as f64 - 0.5))
     }
 }
 
-impl Curve for Constant {
+impl Curve for ConstantVelocity {
     fn duration_s(&self) -> f64 {
         self.duration_s
     }
@@ -54,7 +56,7 @@ impl Curve for Constant {
         if t >= self.duration_s {
             self.steps as f64
         } else if t > 0.0 {
-            self.speed(t) * t
+            signed(self.steps, self.speed) * t
         } else {
             0.0
         }
@@ -87,7 +89,7 @@ impl Dwell {
 }
 
 impl Schedule for Dwell {
-    fn length(&self, clock_hz: u32) -> CycleTime {
+    fn duration(&self, clock_hz: u32) -> CycleTime {
         CycleTime::exact(&Exact::of(self.duration_s).times(clock_hz.into()))
     }
 

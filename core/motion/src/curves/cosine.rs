@@ -13,7 +13,7 @@
 use crate::curves::mirrored::{Mirrored, MirroredCurve, RAMP_PARTS, parts_s};
 use crate::curves::ramp::longest_ramp_s;
 use crate::timing::{
-    CycleTime, Double, Exact, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before, one_searched_run,
+    CycleTime, Exact, F106, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before, one_searched_run,
 };
 use crate::{Peaks, format::ramp_up_to};
 use alloc::{boxed::Box, string::String, vec::Vec};
@@ -79,7 +79,7 @@ fn first_half<N: Number>(t: N, top_speed: N, ramp: N) -> N {
 /// Error of a time in f64: 10 u of the level (three of them from T - t_s), 4 u of the two formulas for x - sin(x), and 2 u
 /// of Newton's method. With the products by ramp time and clock, and the difference from the end, it is below 32 u.
 impl Schedule for Cosine {
-    fn length(&self, clock_hz: u32) -> CycleTime {
+    fn duration(&self, clock_hz: u32) -> CycleTime {
         CycleTime::exact(&Exact::of(self.halves.duration_s).times(clock_hz.into()))
     }
 
@@ -91,7 +91,7 @@ impl Schedule for Cosine {
         let cycles = |time_s: f64| Exact::of(time_s).times(clock_hz.into()).double();
         let (duration, ramp) = (cycles(self.halves.duration_s), cycles(self.ramp_s));
         let count = self.halves.steps.unsigned_abs();
-        let top_speed = Double::from(count) / (duration - ramp);
+        let top_speed = F106::from(count) / (duration - ramp);
         Box::new(move |k, since| {
             is_mirrored_due_before((k, count), since, duration, |t, position| {
                 first_half(t, top_speed, ramp) > position.into()

@@ -22,7 +22,7 @@
 
 use crate::curves::mirrored::{Mirrored, MirroredCurve};
 use crate::timing::{
-    CycleTime, Double, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before, one_searched_run,
+    CycleTime, F106, IsDueBefore, Number, Runs, Schedule, is_mirrored_due_before, one_searched_run,
 };
 use crate::{Peaks, format::grouped, square_root};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
@@ -48,7 +48,7 @@ pub struct Limits<N = f64> {
 pub struct JerkLimited {
     halves: Mirrored,
     phases: Phases<f64>,
-    limits: Limits<Double>,
+    limits: Limits<F106>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,12 +141,11 @@ impl<N: Number> Phases<N> {
 impl JerkLimited {
     /// `steps` (left negative, not 0) from rest to rest.
     pub fn new(steps: i64, limits: Limits) -> Self {
-        let [speed, acceleration, jerk] =
-            [limits.speed, limits.acceleration, limits.jerk].map(Double::decimal);
+        let [speed, acceleration, jerk] = [limits.speed, limits.acceleration, limits.jerk].map(F106::decimal);
         Self::from_exact(steps, Limits { speed, acceleration, jerk })
     }
 
-    pub(crate) fn from_exact(steps: i64, limits: Limits<Double>) -> Self {
+    pub(crate) fn from_exact(steps: i64, limits: Limits<F106>) -> Self {
         let [speed, acceleration, jerk] =
             [limits.speed, limits.acceleration, limits.jerk].map(|number| number.high);
         let phases = Phases::new(steps, Limits { speed, acceleration, jerk });
@@ -175,7 +174,7 @@ impl JerkLimited {
 /// speed there makes a third of the time. With the root, the difference from the end and the product with the clock it is
 /// below 48 u.
 impl Schedule for JerkLimited {
-    fn length(&self, clock_hz: u32) -> CycleTime {
+    fn duration(&self, clock_hz: u32) -> CycleTime {
         CycleTime::of(Phases::new(self.halves.steps, self.limits).duration_s * f64::from(clock_hz))
     }
 

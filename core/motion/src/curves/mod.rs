@@ -43,7 +43,7 @@ pub(crate) mod trapezoid;
 pub(crate) mod trapezoid_table;
 
 pub use acceleration_table::AccelerationTable;
-pub use constant_velocity::{Constant, Dwell};
+pub use constant_velocity::{ConstantVelocity, Dwell};
 pub use cosine::Cosine;
 pub use jerk_limited::{JerkLimited, Limits as JerkLimits};
 pub use points::Points;

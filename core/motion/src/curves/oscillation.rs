@@ -7,7 +7,7 @@
 //! ```
 
 use crate::curves::curve::greater;
-use crate::timing::{CycleTime, Double, Exact};
+use crate::timing::{CycleTime, Exact, F106};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Oscillation {
@@ -28,12 +28,12 @@ impl Oscillation {
         self.period_s * f64::from(self.periods)
     }
 
-    pub(crate) fn length(&self, clock_hz: u32) -> CycleTime {
+    pub(crate) fn duration(&self, clock_hz: u32) -> CycleTime {
         let duration = Exact::of(self.period_s).times(self.periods.into());
         CycleTime::exact(&duration.times(clock_hz.into()))
     }
 
-    pub(crate) fn period(&self, clock_hz: u32) -> Double {
+    pub(crate) fn period(&self, clock_hz: u32) -> F106 {
         Exact::of(self.period_s).times(clock_hz.into()).double()
     }
 

@@ -15,7 +15,7 @@ mod passed;
 
 use crate::curves::cubic::{Crossing, Cubic, slope_between};
 use crate::curves::curve::greater;
-use crate::timing::{CycleTime, Double, Exact, Interpolated, IsDueBefore, MAX_ERROR, Run, Runs, Schedule};
+use crate::timing::{CycleTime, Exact, F106, Interpolated, IsDueBefore, MAX_ERROR, Run, Runs, Schedule};
 use crate::{Curve, Peaks, format::grouped, moves::Interpolation, round_half_up};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 use max_error::{MaxError, max_errors};
@@ -26,8 +26,8 @@ const CURVE_PARTS: u32 = 256;
 /// A point in 106 bits, relative to the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Point {
-    pub(crate) time_s: Double,
-    pub(crate) position: Double,
+    pub(crate) time_s: F106,
+    pub(crate) position: F106,
 }
 
 /// A curve through points.
@@ -137,8 +137,8 @@ impl Points {
 }
 
 impl Schedule for Points {
-    fn length(&self, clock_hz: u32) -> CycleTime {
-        let duration_s = self.exact.last().map_or_else(Double::default, |last| last.time_s);
+    fn duration(&self, clock_hz: u32) -> CycleTime {
+        let duration_s = self.exact.last().map_or_else(F106::default, |last| last.time_s);
         CycleTime::of(duration_s * f64::from(clock_hz))
     }
 
@@ -187,7 +187,7 @@ fn end_positions(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
     let positions = ends.map(|((piece, end), goes_left)| {
         went_right = piece.to > piece.from || (piece.to == piece.from && went_right);
         let due = round_half_up(end.position.high);
-        let half = Double::from(due as f64 - 0.5);
+        let half = F106::from(due as f64 - 0.5);
         // The f64 may be the half although the point is less.
         let is_below = half > end.position;
         let only_touches = went_right && goes_left && end.position <= half;

@@ -15,7 +15,7 @@ use crate::curves::mirrored::{Mirrored, MirroredCurve, RAMP_PARTS, parts_s};
 use crate::curves::ramp::{Ramp, longest_ramp_s};
 use crate::format::{grouped, ramp_up_to};
 use crate::timing::{
-    CycleTime, Double, Exact, IsDueBefore, Runs, Schedule, is_mirrored_due_before, one_searched_run,
+    CycleTime, Exact, F106, IsDueBefore, Runs, Schedule, is_mirrored_due_before, one_searched_run,
 };
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
@@ -72,7 +72,7 @@ impl Ramps {
 /// because the travel begins with the square of the time; at most 10 u of a sigmoid's range, whose error shifts the steep
 /// start. With Newton's method, the products by ramp time and clock, and the difference from the end it is below 48 u.
 impl Schedule for Ramps {
-    fn length(&self, clock_hz: u32) -> CycleTime {
+    fn duration(&self, clock_hz: u32) -> CycleTime {
         CycleTime::exact(&Exact::of(self.halves.duration_s).times(clock_hz.into()))
     }
 
@@ -84,12 +84,12 @@ impl Schedule for Ramps {
         let cycles = |time_s: f64| Exact::of(time_s).times(clock_hz.into()).double();
         let (duration, ramp) = (cycles(self.halves.duration_s), cycles(self.ramp_s));
         let (shape, count) = (self.ramp.exact(), self.halves.steps.unsigned_abs());
-        let lost = ramp * (Double::from(1.0) - shape.area());
-        let top_speed = Double::from(count) / (duration - lost * 2.0);
+        let lost = ramp * (F106::from(1.0) - shape.area());
+        let top_speed = F106::from(count) / (duration - lost * 2.0);
         Box::new(move |k, since| {
             is_mirrored_due_before((k, count), since, duration, |t, position| {
                 if t < ramp {
-                    shape.is_past(t / ramp, Double::from(position) / (top_speed * ramp))
+                    shape.is_past(t / ramp, F106::from(position) / (top_speed * ramp))
                 } else {
                     top_speed * (t - lost) > position.into()
                 }

@@ -12,7 +12,7 @@
 //! The arcsine is only used up to 45 degrees, so that no digits cancel.
 
 use crate::timing::{
-    CycleTime, Double, IsDueBefore, Number, Run, Runs, Schedule, Times, is_mirrored_due_before,
+    CycleTime, F106, IsDueBefore, Number, Run, Runs, Schedule, Times, is_mirrored_due_before,
 };
 use crate::{Curve, Peaks, curves::oscillation::Oscillation, square_root};
 use alloc::{boxed::Box, format, rc::Rc, string::String, vec::Vec};
@@ -47,8 +47,8 @@ impl Sine {
 /// multiplies by up to 4/pi. With its own two, the product with 2/pi, the sum of half periods and the product with their
 /// cycles it is at most 10 u.
 impl Schedule for Sine {
-    fn length(&self, clock_hz: u32) -> CycleTime {
-        self.oscillation.length(clock_hz)
+    fn duration(&self, clock_hz: u32) -> CycleTime {
+        self.oscillation.duration(clock_hz)
     }
 
     /// One run per half period. They have the same times from their starts, which are saved, because an arcsine takes 20
@@ -78,9 +78,9 @@ impl Schedule for Sine {
         let period = self.oscillation.period(clock_hz);
         let half = period * 0.5;
         Box::new(move |k, since| {
-            let since = since - half * Double::from((k - 1) / travel);
+            let since = since - half * F106::from((k - 1) / travel);
             is_mirrored_due_before(((k - 1) % travel + 1, travel), since, half, |time, position| {
-                let phase = Double::PI * time / period;
+                let phase = F106::PI * time / period;
                 let sine = phase - phase.minus_its_sine();
                 sine * sine * travel as f64 > position.into()
             })

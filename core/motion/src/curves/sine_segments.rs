@@ -12,7 +12,7 @@
 
 use crate::curves::oscillation::Oscillation;
 use crate::curves::polyline::{Folded, POINTS, QUARTER, breakpoints, cosine_at, fold};
-use crate::timing::{CycleTime, Double, IsDueBefore, Run, Runs, Schedule};
+use crate::timing::{CycleTime, F106, IsDueBefore, Run, Runs, Schedule};
 use crate::{Curve, Peaks, format::grouped, round_half_up};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
@@ -163,8 +163,8 @@ impl SineSegments {
 }
 
 impl Schedule for SineSegments {
-    fn length(&self, clock_hz: u32) -> CycleTime {
-        self.oscillation.length(clock_hz)
+    fn duration(&self, clock_hz: u32) -> CycleTime {
+        self.oscillation.duration(clock_hz)
     }
 
     /// One run per segment, because each has its own rate.
@@ -196,8 +196,8 @@ impl Schedule for SineSegments {
                 return false;
             };
             let halves = 2 * (step - (end - steps)) + 1;
-            let along = Double::from(halves) * (to - from) / Double::from(2 * steps);
-            since > period * (Double::from(periods) + (along + *from) / f64::from(POINTS))
+            let along = F106::from(halves) * (to - from) / F106::from(2 * steps);
+            since > period * (F106::from(periods) + (along + *from) / f64::from(POINTS))
         })
     }
 }

@@ -15,7 +15,7 @@ mod compensation;
 
 use crate::curves::{cosine::Cosine, curve::signed};
 use crate::format::{grouped, ramp_up_to};
-use crate::timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule};
+use crate::timing::{CycleTime, F106, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule};
 use crate::{Curve, Peaks};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 use compensation::{CompensatedSlices, ROUNDING_TOLERANCE, UncompensatedSlices, slices_in};
@@ -161,7 +161,7 @@ impl Sliced {
 }
 
 impl Schedule for Sliced {
-    fn length(&self, clock_hz: u32) -> CycleTime {
+    fn duration(&self, clock_hz: u32) -> CycleTime {
         let duration_s = self.slices.exact_starts_s.last().copied().unwrap_or_default();
         CycleTime::of(duration_s * f64::from(clock_hz))
     }
@@ -185,7 +185,7 @@ impl Schedule for Sliced {
             else {
                 return false;
             };
-            let half_intervals = Double::from(2 * (k - u64::from(slice.steps_before)) - 1);
+            let half_intervals = F106::from(2 * (k - u64::from(slice.steps_before)) - 1);
             let step_s = from_s + (to_s - from_s) * half_intervals / f64::from(2 * slice.steps.max(1));
             since > step_s * f64::from(clock_hz)
         })

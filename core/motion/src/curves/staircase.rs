@@ -14,7 +14,7 @@ use crate::curves::curve::{greater, signed};
 use crate::curves::stepped::{self, ExactTime};
 use crate::curves::{mirrored::Mirrored, staircase_table::StaircaseTable};
 use crate::format::{count, grouped};
-use crate::timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule};
+use crate::timing::{CycleTime, F106, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule};
 use crate::{Curve, Peaks, bisection::first_in, moves::ShortMove};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
@@ -130,18 +130,18 @@ impl Staircase {
         }
     }
 
-    fn exact_duration(&self) -> Double {
-        let plateau = Double::from(self.plateau_steps()) / Double::from(self.plateau_rate);
+    fn exact_duration(&self) -> F106 {
+        let plateau = F106::from(self.plateau_steps()) / F106::from(self.plateau_rate);
         self.exact_starts().last().copied().unwrap_or_default() * 2.0 + plateau
     }
 
-    fn exact_starts(&self) -> Vec<Double> {
-        let row_s = |n| Double::from(StaircaseTable::steps_in(n)) / Double::from(self.table.rate(n));
-        let ends = (1..=self.ramp_rows()).scan(Double::default(), |end, n| {
+    fn exact_starts(&self) -> Vec<F106> {
+        let row_s = |n| F106::from(StaircaseTable::steps_in(n)) / F106::from(self.table.rate(n));
+        let ends = (1..=self.ramp_rows()).scan(F106::default(), |end, n| {
             *end = *end + row_s(n);
             Some(*end)
         });
-        core::iter::once(Double::default()).chain(ends).collect()
+        core::iter::once(F106::default()).chain(ends).collect()
     }
 
     fn guess_in_ramp(&self, t: f64) -> u64 {
@@ -172,7 +172,7 @@ impl Staircase {
 }
 
 impl Schedule for Staircase {
-    fn length(&self, clock_hz: u32) -> CycleTime {
+    fn duration(&self, clock_hz: u32) -> CycleTime {
         CycleTime::of(self.exact_duration() * f64::from(clock_hz))
     }
 
@@ -209,16 +209,16 @@ impl Schedule for Staircase {
         let ramp_s = starts.last().copied().unwrap_or_default();
         let ramp_step_s = move |k: u64| {
             let before = self.row_of_step(k) - 1;
-            let since = Double::from(k - StaircaseTable::steps_after(before));
+            let since = F106::from(k - StaircaseTable::steps_after(before));
             let start = starts.get(before as usize).copied().unwrap_or_default();
-            start + since / Double::from(self.table.rate(before + 1))
+            start + since / F106::from(self.table.rate(before + 1))
         };
         Box::new(move |k, since| {
             let left = self.count().saturating_sub(k);
             let step_s = if k <= self.ramp_steps {
                 ramp_step_s(k)
             } else if left >= self.ramp_steps {
-                ramp_s + Double::from(k - self.ramp_steps) / Double::from(self.plateau_rate)
+                ramp_s + F106::from(k - self.ramp_steps) / F106::from(self.plateau_rate)
             } else {
                 duration - ramp_step_s(left)
             };

@@ -14,7 +14,7 @@
 
 use crate::curves::mirrored::{Mirrored, MirroredCurve};
 use crate::timing::{
-    CycleTime, Double, IsDueBefore, MoveSteps, Number, Runs, Schedule, is_mirrored_due_before, one_run,
+    CycleTime, F106, IsDueBefore, MoveSteps, Number, Runs, Schedule, is_mirrored_due_before, one_run,
 };
 use crate::{Curve, Peaks};
 use alloc::{boxed::Box, vec::Vec};
@@ -24,7 +24,7 @@ use alloc::{boxed::Box, vec::Vec};
 pub struct Trapezoid {
     halves: Mirrored,
     half: Half<f64>,
-    limits: Limits<Double>,
+    limits: Limits<F106>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,11 +76,11 @@ impl Trapezoid {
     /// in steps and s. The top speed is above 0.
     pub fn new(steps: i64, start_speed: f64, top_speed: f64, acceleration: f64) -> Self {
         let [start_speed, top_speed, acceleration] =
-            [start_speed, top_speed, acceleration].map(Double::decimal);
+            [start_speed, top_speed, acceleration].map(F106::decimal);
         Self::from_exact(steps, Limits { start_speed, top_speed, acceleration })
     }
 
-    pub(crate) fn from_exact(steps: i64, limits: Limits<Double>) -> Self {
+    pub(crate) fn from_exact(steps: i64, limits: Limits<F106>) -> Self {
         let Limits { start_speed, top_speed, acceleration } = limits;
         let [start_speed, top_speed, acceleration] =
             [start_speed, top_speed, acceleration].map(|number| number.high);
@@ -109,13 +109,13 @@ impl Trapezoid {
         MoveSteps::new(self, CycleTime::default(), clock_hz).map(|(_, step)| step.cycle)
     }
 
-    fn exact(&self) -> Half<Double> {
+    fn exact(&self) -> Half<F106> {
         Half::new(self.halves.steps, self.limits)
     }
 }
 
 impl Schedule for Trapezoid {
-    fn length(&self, clock_hz: u32) -> CycleTime {
+    fn duration(&self, clock_hz: u32) -> CycleTime {
         CycleTime::of(self.exact().duration_s * f64::from(clock_hz))
     }
 

@@ -16,7 +16,7 @@
 use crate::curves::acceleration_table::AccelerationTable;
 use crate::curves::curve::{greater, signed};
 use crate::curves::stepped::{self, ExactTime};
-use crate::timing::{CycleTime, Double, IsDueBefore, Run, Runs, Schedule};
+use crate::timing::{CycleTime, F106, IsDueBefore, Run, Runs, Schedule};
 use crate::{Curve, Peaks, bisection::first_near, format::grouped};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
 
@@ -120,10 +120,7 @@ impl TrapezoidTable {
         let timer_hz = u128::from(self.table.timer_hz().max(1));
         let product = u128::from(self.step_ticks(k)) * u128::from(clock_hz);
         let (whole, remainder) = (product / timer_hz, product % timer_hz);
-        CycleTime {
-            whole: whole as u64,
-            part: Double::from(remainder as u64) / Double::from(timer_hz as u64),
-        }
+        CycleTime { whole: whole as u64, part: F106::from(remainder as u64) / F106::from(timer_hz as u64) }
     }
 
     fn first_sum(&self, ticks: u64, near: u64) -> u64 {
@@ -177,7 +174,7 @@ impl TrapezoidTable {
 }
 
 impl Schedule for TrapezoidTable {
-    fn length(&self, clock_hz: u32) -> CycleTime {
+    fn duration(&self, clock_hz: u32) -> CycleTime {
         self.step_time(self.count(), clock_hz)
     }
 

@@ -74,7 +74,7 @@ impl AxisPlan {
         let mut start = CycleTime::default();
         self.moves.iter().flat_map(move |PlannedMove { profile, .. }| {
             let steps = MoveSteps::new(profile.schedule(), start, clock_hz);
-            start = start.plus(profile.schedule().length(clock_hz));
+            start = start.plus(profile.schedule().duration(clock_hz));
             steps
         })
     }

@@ -10,7 +10,7 @@ use crate::curves::{
     oscillation::Oscillation, sine::Sine, sine_segments::SineSegments, stepped::PAST_THE_STEP,
     trapezoid_table::TrapezoidTable,
 };
-use crate::timing::{CycleTime, Double, IsDueBefore, MAX_ERROR, tie};
+use crate::timing::{CycleTime, F106, IsDueBefore, MAX_ERROR, tie};
 use crate::{AxisPlan, Curve, PlannedMove, Profile};
 
 /// Counts the steps of an axis that are due by one cycle after another.
@@ -51,7 +51,7 @@ impl AxisPlan {
     pub(crate) fn spans(&self, cycles: u64, clock_hz: u32) -> u64 {
         let cycles = cycles.max(1);
         let end = self.moves().iter().fold(CycleTime::default(), |end, planned| {
-            end.plus(planned.profile.schedule().length(clock_hz.max(1)))
+            end.plus(planned.profile.schedule().duration(clock_hz.max(1)))
         });
         let mut spans = (end.whole / cycles).max(1);
         // One more if the end is within a span, or if the last step is due in the cycle after the span.
@@ -121,8 +121,8 @@ impl Elapsed {
 
     /// In cycles, in 106 bits; a tie later for a step to the right, which is due at the cycle itself, and a tie earlier for
     /// one to the left.
-    fn since_exact(self, right: bool) -> Double {
-        let since = Double::from(self.cycle.wrapping_sub(self.start.whole)) - self.start.part;
+    fn since_exact(self, right: bool) -> F106 {
+        let since = F106::from(self.cycle.wrapping_sub(self.start.whole)) - self.start.part;
         let tie = tie(self.cycle);
         if right { since + tie } else { since - tie }
     }
@@ -134,7 +134,7 @@ impl<'p> CurrentMove<'p> {
         Self {
             planned,
             start,
-            end: start.plus(schedule.length(clock_hz)),
+            end: start.plus(schedule.duration(clock_hz)),
             max_error: planned.profile.max_position_error(),
             is_due_before: schedule.is_due_before(clock_hz),
             due: 0,

@@ -10,7 +10,7 @@ mod staircase;
 mod timed;
 mod trapezoid;
 
-use crate::curves::constant_velocity::{Constant, Dwell};
+use crate::curves::constant_velocity::{ConstantVelocity, Dwell};
 use crate::curves::{
     cosine::Cosine, curve::Curve, jerk_limited::JerkLimited, oscillation::Oscillation, points::Points,
     ramps::Ramps, sine::Sine, sine_segments::SineSegments, sliced::Sliced, staircase::Staircase,
@@ -34,7 +34,7 @@ pub enum Profile {
     Sine(Sine),
     JerkLimited(JerkLimited),
     Points(Points),
-    Constant(Constant),
+    Constant(ConstantVelocity),
     Dwell(Dwell),
 }
 

@@ -1,7 +1,7 @@
 //! Converts the numbers of a scenario to steps, and checks that each is in its range and in a unit of the axis (DESIGN B1).
 
 use crate::mechanics::{Acceleration, Distance, Jerk, Mechanics, NoSuchUnit, Speed};
-use crate::{limits, problem::Cause, timing::Double, validator::Validator};
+use crate::{limits, problem::Cause, timing::F106, validator::Validator};
 use core::ops::RangeInclusive;
 
 type Range = RangeInclusive<f64>;
@@ -106,7 +106,7 @@ impl<'s> Quantities<'s> {
     }
 
     /// The distance in steps between two positions in the same unit, in which one step is `step_size`.
-    pub(crate) fn travel(&mut self, first: f64, given: &Distance, step_size: f64) -> Option<Double> {
+    pub(crate) fn travel(&mut self, first: f64, given: &Distance, step_size: f64) -> Option<F106> {
         self.check_in_own_unit("", given.value(), step_size, limits::STEPS, given.unit())?;
         given.exact_steps_from(first, self.mechanics).ok()
     }

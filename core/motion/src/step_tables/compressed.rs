@@ -258,7 +258,7 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
     }
 
     fn window(&mut self) -> Result<Window, Cause> {
-        let step = self.next.ok_or(Cause::NoSegmentSteps)?;
+        let step = self.next.ok_or(Cause::EmptySegment)?;
         self.read();
         let after = self.next.map(|after| after.cycle.saturating_sub(step.cycle));
         self.count += 1;
@@ -297,7 +297,7 @@ impl Writer {
     fn wait(&mut self, wait: u64) {
         if wait > 0 {
             self.time += wait;
-            self.segments.push(Segment::Dwell(wait << self.format.shift()));
+            self.segments.push(Segment::Dwell(wait << self.format.dropped_bits()));
         }
     }
 
@@ -333,7 +333,7 @@ impl Writer {
             );
             self.error.add((self.time >> self.format.fraction_bits).abs_diff(window.due));
         }
-        let shift = self.format.shift();
+        let shift = self.format.dropped_bits();
         let (interval, add) = (interval << shift, add << shift);
         if !self.extends_last(count, interval, add, right) {
             self.segments.push(Segment::Steps { count, interval, add, right });

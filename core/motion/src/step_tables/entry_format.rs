@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! entry               interval, count, add
-//! count > 0           count steps, each `interval` after the previous one; then interval += add
+//! count > 0           repeats `count` times: waits `interval`, steps, then interval += add
 //! count = 0           no step: waits `interval`, then DIR = add (0 left, 1 right)
 //! ```
 //!
@@ -18,11 +18,11 @@ pub struct EntryFormat {
     pub name: &'static str,
     /// Bits of the fraction of a cycle in interval and add, at most 16.
     pub(super) fraction_bits: u32,
-    /// 32 or 64, unsigned.
+    /// Whole bytes, 8 to 64; unsigned.
     interval_bits: u32,
-    /// 16 or 32, unsigned.
+    /// Whole bytes, 8 to 32; unsigned.
     count_bits: u32,
-    /// 16 or 64, signed.
+    /// Whole bytes, 8 to 64; signed.
     add_bits: u32,
 }
 
@@ -39,8 +39,8 @@ impl EntryFormat {
     /// All formats.
     pub const ALL: [Self; 3] = [Self::Q16, Self::Q8, Self::TICKS];
 
-    /// A format of your own: bits of a cycle's fraction, and of interval, count and add. `None` unless the fraction has
-    /// at most 16 bits, and the numbers have whole bytes: up to 64, 32 and 64 bits.
+    /// A custom format. `widths` are the bits of interval, count and add: whole bytes of up to 64, 32 and 64 bits.
+    /// `None` for other widths, or for more than 16 bits of a cycle's fraction.
     pub const fn new(name: &'static str, fraction_bits: u32, widths: [u32; 3]) -> Option<Self> {
         let [interval_bits, count_bits, add_bits] = widths;
         let format = Self { name, fraction_bits, interval_bits, count_bits, add_bits };
@@ -73,7 +73,7 @@ impl EntryFormat {
         ((self.interval_bits + self.count_bits + self.add_bits) / 8) as u64
     }
 
-    /// In units.
+    /// Maximum interval, in 1/2^fraction_bits cycle.
     pub const fn max_interval(self) -> u64 {
         u64::MAX >> (64 - self.interval_bits)
     }
@@ -83,18 +83,18 @@ impl EntryFormat {
         u32::MAX >> (32 - self.count_bits)
     }
 
-    /// In units.
+    /// Minimum add, in 1/2^fraction_bits cycle.
     pub const fn min_add(self) -> i64 {
         i64::MIN >> (64 - self.add_bits)
     }
 
-    /// In units.
+    /// Maximum add, in 1/2^fraction_bits cycle.
     pub const fn max_add(self) -> i64 {
         i64::MAX >> (64 - self.add_bits)
     }
 
-    /// Bits of a segment's fraction that the format does not have.
-    pub(super) const fn shift(self) -> u32 {
+    /// Fraction bits of a segment that this format drops.
+    pub(super) const fn dropped_bits(self) -> u32 {
         FRACTION_BITS - self.fraction_bits
     }
 
@@ -112,9 +112,10 @@ impl EntryFormat {
                 Segment::Dwell(dwell) => packer.wait(self.units(dwell)?),
                 Segment::Steps { count, interval, add, right } => {
                     packer.set_direction(right);
+                    // A single step has no next interval, so its `add` need not be representable.
                     let add = if count == 1 { 0 } else { add };
                     self.units(add.unsigned_abs())?;
-                    packer.steps(count, self.units(interval)?, add >> self.shift());
+                    packer.steps(count, self.units(interval)?, add >> self.dropped_bits());
                 }
             }
         }
@@ -129,9 +130,17 @@ impl EntryFormat {
         self.pack(list).map(|entries| entries.len() as u64)
     }
 
+    /// Whether the format can represent `add` and all intervals, whatever the count.
+    fn has_range_for(self, interval: u64, count: u32, add: i64) -> bool {
+        let last = i128::from(interval) + i128::from(add) * i128::from(count.saturating_sub(1));
+        (self.min_add()..=self.max_add()).contains(&add)
+            && interval <= self.max_interval()
+            && (0..=i128::from(self.max_interval())).contains(&last)
+    }
+
     fn units(self, time: u64) -> Result<u64, Cause> {
-        if time.trailing_zeros() >= self.shift() {
-            Ok(time >> self.shift())
+        if time.trailing_zeros() >= self.dropped_bits() {
+            Ok(time >> self.dropped_bits())
         } else {
             let detail = "the format has fewer fraction bits than the list; use q16";
             Err(ValueError::Conflict { detail }.into())
@@ -176,17 +185,15 @@ impl Packer {
     }
 
     fn steps(&mut self, mut count: u32, mut interval: u64, add: i64) {
-        let format = self.format;
-        let last = i128::from(interval) + i128::from(add) * i128::from(count.saturating_sub(1));
-        let fits = (format.min_add()..=format.max_add()).contains(&add)
-            && interval <= format.max_interval()
-            && (0..=i128::from(format.max_interval())).contains(&last);
-        let max = if fits { format.max_count() } else { 1 };
+        let (max_count, max_interval) = (self.format.max_count(), self.format.max_interval());
+        let is_representable = self.format.has_range_for(interval, count, add);
+        let max_part = if is_representable { max_count } else { 1 };
         while count > 0 {
-            let part = count.min(max);
-            self.wait(interval.saturating_sub(format.max_interval()));
-            let first = interval.min(format.max_interval());
-            self.entries.push(Entry { interval: first, count: part, add: if part == 1 { 0 } else { add } });
+            let part = count.min(max_part);
+            self.wait(interval.saturating_sub(max_interval));
+            let add_of_part = if part == 1 { 0 } else { add };
+            self.entries.push(Entry { interval: interval.min(max_interval), count: part, add: add_of_part });
+            // Only the interval after the last step of a valid list can saturate, and no entry uses it.
             interval = interval.saturating_add_signed(add.saturating_mul(part.into()));
             count -= part;
         }

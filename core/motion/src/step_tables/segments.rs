@@ -53,7 +53,7 @@ pub fn exact_segments(
         return Err(problems);
     }
     CheckedSegments::new(pulse, lists, 1).map_err(|refused| {
-        refused.iter().map(|list| Problem::new(at.axis(list.channel), Cause::NoSegmentSteps)).collect()
+        refused.iter().map(|list| Problem::new(at.axis(list.channel), Cause::EmptySegment)).collect()
     })
 }
 

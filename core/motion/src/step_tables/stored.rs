@@ -14,7 +14,7 @@ use crate::step_tables::segments::{MAX_STEPS, exact};
 use crate::step_tables::{timing_error::TimingError, wire_bytes::wire_bytes};
 use crate::{AxisPlan, ScheduledStep};
 use alloc::{vec, vec::Vec};
-use stepscope_peripheral::segment::{CheckedSegments, PulseTimes, Refusal, SegmentList};
+use stepscope_peripheral::segment::{CheckedSegments, PulseTimes, SegmentList};
 use stepscope_peripheral::units::Cycles;
 
 /// Maximum steps of one axis' compressed list or document table.
@@ -147,7 +147,7 @@ fn table<I: Iterator<Item = ScheduledStep>>(
     let list = checked(list, pulse)?;
     let error = match error {
         Some(error) => error,
-        None => TimingError::of(&list, due()).ok_or(Cause::NoSegmentSteps)?,
+        None => TimingError::of(&list, due()).ok_or(Cause::EmptySegment)?,
     };
     let entries = format.pack(&list)?;
     Ok(Stored { list, format, entries, document_bytes: None, error, surplus })
@@ -178,12 +178,11 @@ fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
 
 fn checked(list: SegmentList, pulse: PulseTimes) -> Result<SegmentList, Cause> {
     match CheckedSegments::new(pulse, vec![list], 1) {
-        Ok(found) => Ok(found.into_lists().pop().ok_or(Cause::NoSegmentSteps)?),
-        Err(refused) => Err(match refused.first().map(|refused| refused.refusal) {
-            Some(Refusal::Interval { step, interval }) => Cause::SegmentInterval { step, interval, pulse },
-            Some(Refusal::End { next }) => Cause::SegmentEnd { next },
-            _ => Cause::NoSegmentSteps,
-        }),
+        Ok(found) => Ok(found.into_lists().pop().ok_or(Cause::EmptySegment)?),
+        Err(refused) => {
+            let first = refused.first().map(|refused| Cause::of_refusal(refused.refusal, pulse));
+            Err(first.unwrap_or(Cause::EmptySegment))
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 //! 88.35 mm at 0.1 mm per step    8835/100 : 1/10 = 883.5, and 884 steps; in f64 the quotient is 883.4999…
 //! ```
 
-use crate::timing::double::Double;
+use crate::timing::double::F106;
 use alloc::format;
 use num_bigint::{BigInt, BigUint};
 use num_integer::Integer;
@@ -74,10 +74,10 @@ impl Exact {
     }
 
     /// The fraction in 106 bits.
-    pub(crate) fn double(&self) -> Double {
+    pub(crate) fn double(&self) -> F106 {
         let (quotient, scale, _) = self.digits(DOUBLE_BITS);
         let half = |digits: u128, scale: i32| self.signed(libm::scalbn(digits as u64 as f64, scale));
-        Double::sum(
+        F106::sum(
             half(quotient >> HALF_BITS, scale + HALF_BITS),
             half(quotient & ((1 << HALF_BITS) - 1), scale),
         )
@@ -102,7 +102,7 @@ impl Exact {
     }
 
     /// The integer part and the fraction in 106 bits, from 0 to below 2^64.
-    pub(crate) fn whole_and_part(&self) -> (u64, Double) {
+    pub(crate) fn whole_and_part(&self) -> (u64, F106) {
         let (whole, remainder) = self.numerator.magnitude().div_rem(&self.denominator);
         let part = Self { numerator: remainder.into(), denominator: self.denominator.clone() };
         (u64::try_from(whole).unwrap_or(u64::MAX), part.double())
@@ -113,7 +113,7 @@ impl Exact {
     }
 }
 
-impl Double {
+impl F106 {
     pub(crate) fn decimal(number: f64) -> Self {
         Exact::of(number).double()
     }

@@ -12,10 +12,10 @@
 use crate::{square_root, timing::number::Number};
 use core::ops::{Add, Div, Mul, Sub};
 
-/// A number of 106 bits.
+/// A number of 106 bits: the sum of two f64 (a double-double).
 // Invariant: `high` is the f64 nearest to the sum, so the derived comparison is right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
-pub(crate) struct Double {
+pub(crate) struct F106 {
     pub(crate) high: f64,
     pub(crate) low: f64,
 }
@@ -28,20 +28,20 @@ const MIN_TERM: f64 = 1e-33;
 /// The series of e^41 needs 200 terms.
 const MAX_TERMS: u32 = 400;
 
-impl From<f64> for Double {
+impl From<f64> for F106 {
     fn from(number: f64) -> Self {
         Self { high: number, low: 0.0 }
     }
 }
 
-impl From<u64> for Double {
+impl From<u64> for F106 {
     fn from(whole: u64) -> Self {
         let upper = (whole >> 32) as f64 * 4_294_967_296.0;
         Self::sum(upper, (whole & 0xffff_ffff) as f64)
     }
 }
 
-impl Double {
+impl F106 {
     pub(crate) fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let from_b = high - a;
@@ -83,7 +83,7 @@ impl Double {
     }
 }
 
-impl Number for Double {
+impl Number for F106 {
     const PI: Self = Self { high: core::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
 
     fn square_root(self) -> Self {
@@ -110,7 +110,7 @@ impl Number for Double {
     }
 }
 
-impl Double {
+impl F106 {
     /// e^x - 1 - x without cancellation, for x from -20 to slightly above 40.
     pub(crate) fn exponential_remainder(self) -> Self {
         if self.high < -1.0 {
@@ -122,7 +122,7 @@ impl Double {
     }
 }
 
-impl Add for Double {
+impl Add for F106 {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -132,7 +132,7 @@ impl Add for Double {
     }
 }
 
-impl Sub for Double {
+impl Sub for F106 {
     type Output = Self;
 
     #[allow(clippy::suspicious_arithmetic_impl, reason = "the difference is the sum with the opposite")]
@@ -141,7 +141,7 @@ impl Sub for Double {
     }
 }
 
-impl Mul for Double {
+impl Mul for F106 {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -150,7 +150,7 @@ impl Mul for Double {
     }
 }
 
-impl Div for Double {
+impl Div for F106 {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
@@ -165,7 +165,7 @@ impl Div for Double {
 
 macro_rules! with_f64 {
     ($($operation:ident $name:ident,)*) => {$(
-        impl $operation<f64> for Double {
+        impl $operation<f64> for F106 {
             type Output = Self;
 
             fn $name(self, other: f64) -> Self {
@@ -182,13 +182,13 @@ mod tests {
     use super::*;
 
     /// Compares two numbers with a relative tolerance.
-    fn check(found: Double, expected: Double) {
+    fn check(found: F106, expected: F106) {
         let off = libm::fabs((found - expected).high);
         assert!(off <= 1e-30 * libm::fabs(expected.high), "{found:?} {expected:?}: {off}");
     }
 
-    fn number(number: f64) -> Double {
-        Double::decimal(number)
+    fn number(number: f64) -> F106 {
+        F106::decimal(number)
     }
 
     #[test]
@@ -197,8 +197,8 @@ mod tests {
         assert!(tenth.high == 0.1 && tenth.low != 0.0);
         check(tenth * 10.0, 1.0.into());
         check(number(-1e22), (-1e22).into());
-        assert_eq!(number(0.0), Double::default());
-        check(Double::from(u64::MAX) + 1.0, 18_446_744_073_709_551_616.0.into());
+        assert_eq!(number(0.0), F106::default());
+        check(F106::from(u64::MAX) + 1.0, 18_446_744_073_709_551_616.0.into());
     }
 
     #[test]
@@ -208,39 +208,39 @@ mod tests {
             check(a * b / b, a);
             check(a.square_root() * a.square_root(), a);
             check(b.cube_root() * b.cube_root() * b.cube_root(), b);
-            check(Double::from(1.0) / (Double::from(1.0) / a), a);
+            check(F106::from(1.0) / (F106::from(1.0) / a), a);
         }
-        assert_eq!(Double::default().square_root(), Double::default());
+        assert_eq!(F106::default().square_root(), F106::default());
         assert!(number(0.3) > number(0.1) + number(0.1) && number(0.1) <= number(0.1));
     }
 
     /// By sin(2x) = 2*sin(x)*sin(pi/2 - x), and sin(pi/6) = 1/2.
     #[test]
     fn a_sine_has_106_bits() {
-        let sine = |x: Double| x - x.minus_its_sine();
-        check(sine(Double::PI / 6.0), 0.5.into());
-        check(Double::PI.minus_its_sine(), Double::PI);
+        let sine = |x: F106| x - x.minus_its_sine();
+        check(sine(F106::PI / 6.0), 0.5.into());
+        check(F106::PI.minus_its_sine(), F106::PI);
         for i in 1..50 {
-            let x = Double::PI * f64::from(i) / 200.0;
-            check(sine(x + x), sine(x) * sine(Double::PI / 2.0 - x) * 2.0);
+            let x = F106::PI * f64::from(i) / 200.0;
+            check(sine(x + x), sine(x) * sine(F106::PI / 2.0 - x) * 2.0);
         }
         // 1e-9^3/6*(1 - 1e-18/20 + …).
         let small = number(1e-9);
-        check(small.minus_its_sine(), small * small * small / 6.0 * (Double::from(1.0) - number(5e-20)));
+        check(small.minus_its_sine(), small * small * small / 6.0 * (F106::from(1.0) - number(5e-20)));
     }
 
     #[test]
     fn an_exponential_has_106_bits() {
-        let exponential = |x: Double| x.exponential_remainder() + x + 1.0;
+        let exponential = |x: F106| x.exponential_remainder() + x + 1.0;
         // ln(2), so the results are powers of 2.
-        let logarithm = Double { high: core::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
+        let logarithm = F106 { high: core::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
         for i in [-28.0, -3.0, 1.0, 2.0, 10.0, 59.0] {
             check(exponential(logarithm * i), libm::exp2(i).into());
         }
         // On both sides of 0, and where the formula changes.
         for x in [1e-9, 0.3, 0.999, 1.001] {
             let (above, below) = (number(x).exponential_remainder(), number(-x).exponential_remainder());
-            let one = Double::from(1.0);
+            let one = F106::from(1.0);
             check((one + number(x) + above) * (one - number(x) + below), one);
         }
         // x^2/2*(1 + x/3 + x^2/12 + x^3/60 + …).

@@ -11,7 +11,7 @@ mod step_loop;
 
 pub(crate) use cycle_time::{CycleTime, tie};
 pub(crate) use decimal::Exact;
-pub(crate) use double::Double;
+pub(crate) use double::F106;
 pub(crate) use interpolated::{Interpolated, one_searched_run};
 pub(crate) use number::Number;
 #[cfg(test)]

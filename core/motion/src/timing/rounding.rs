@@ -6,7 +6,7 @@
 //!                   [-x-]                             a time in f64 and its maximum error
 //! ```
 //!
-//! A time in f64 decides unless an edge is within its error. Otherwise the curve decides in 106 bits ([`Double`]): the step
+//! A time in f64 decides unless an edge is within its error. Otherwise the curve decides in 106 bits ([`F106`]): the step
 //! is due before an edge E if the curve has passed the step's position at E. That needs the curve's formula but no root, and
 //! it is exact however wrong the f64 was.
 //!
@@ -18,7 +18,7 @@
 //! the next cycle. So is a step due less than a tie before E: one step in 2^62 of a motion of 2^32 cycles.
 
 use crate::timing::cycle_time::{CycleTime, tie};
-use crate::{bisection::first_near, timing::double::Double};
+use crate::{bisection::first_near, timing::double::F106};
 
 /// Maximum error of a time in f64, relative to the duration of its move: 64 roundings.
 pub(crate) const MAX_ERROR: f64 = 64.0 * ROUNDING;
@@ -26,14 +26,14 @@ pub(crate) const MAX_ERROR: f64 = 64.0 * ROUNDING;
 pub(crate) const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 /// Whether a step (from 1) is due before a time in cycles from its move's start.
-pub(crate) type IsDueBefore<'p> = alloc::boxed::Box<dyn Fn(u64, Double) -> bool + 'p>;
+pub(crate) type IsDueBefore<'p> = alloc::boxed::Box<dyn Fn(u64, F106) -> bool + 'p>;
 
 /// The cycle of a step of a move that begins at `start`. `is_due_before` decides for a time since the start; `guess` only
 /// affects the duration of the search.
-pub(crate) fn decide_cycle(start: CycleTime, guess: u64, is_due_before: impl Fn(Double) -> bool) -> u64 {
+pub(crate) fn decide_cycle(start: CycleTime, guess: u64, is_due_before: impl Fn(F106) -> bool) -> u64 {
     first_near(guess, u64::MAX, |cycle| {
         // The edge at the end of the cycle, half a cycle after it.
-        let since = Double::from(cycle.wrapping_sub(start.whole) as i64 as f64) - start.part + 0.5;
+        let since = F106::from(cycle.wrapping_sub(start.whole) as i64 as f64) - start.part + 0.5;
         is_due_before(since - tie(cycle))
     })
 }
@@ -42,9 +42,9 @@ pub(crate) fn decide_cycle(start: CycleTime, guess: u64, is_due_before: impl Fn(
 /// `is_past` returns whether the first half has passed a position at a time.
 pub(crate) fn is_mirrored_due_before(
     (k, count): (u64, u64),
-    time: Double,
-    duration: Double,
-    is_past: impl Fn(Double, f64) -> bool,
+    time: F106,
+    duration: F106,
+    is_past: impl Fn(F106, f64) -> bool,
 ) -> bool {
     let position = k as f64 - 0.5;
     let steps_left = count as f64 - position;
@@ -61,7 +61,7 @@ pub(crate) fn is_mirrored_due_before(
 mod tests {
     use super::*;
 
-    fn at(whole: u64, part: Double) -> CycleTime {
+    fn at(whole: u64, part: F106) -> CycleTime {
         CycleTime { whole, part }
     }
 

@@ -15,7 +15,7 @@ use crate::{Curve, timing::cycle_time::CycleTime};
 use alloc::boxed::Box;
 
 pub(crate) trait Schedule: Curve {
-    fn length(&self, clock_hz: u32) -> CycleTime;
+    fn duration(&self, clock_hz: u32) -> CycleTime;
 
     /// Times of all steps at `clock_hz`, run by run.
     fn runs(&self, clock_hz: u32) -> Runs<'_>;

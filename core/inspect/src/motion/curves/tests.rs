@@ -1,7 +1,7 @@
 //! Columns compared with many samples of each.
 
 use super::*;
-use crate::trace::stored_run::Recording;
+use crate::trace::stored_run::StoredRun;
 use alloc::{format, vec::Vec};
 use stepscope_peripheral::trace::steps;
 use stepscope_sim::Experiment;
@@ -11,14 +11,14 @@ type Value<'a> = &'a dyn Fn(f64) -> f64;
 
 struct Ran {
     experiment: Experiment,
-    recording: Recording,
+    recording: StoredRun,
     steps: Vec<Step>,
 }
 
 impl Ran {
     fn of(source: &str) -> Self {
         let experiment = Experiment::from_json(&format!(r#"{{"source":{source}}}"#)).expect("no problems");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         experiment.run(&mut recording);
         let steps = steps(&recording.trace, 0);
         Self { experiment, recording, steps }
@@ -203,7 +203,7 @@ fn acceleration_of_steps_equals_their_figures_and_is_near_their_plan() {
     let json = r#"{"source":{"motion":{"engine":"segments","axes":[{"moves":[{"cosine":{}},
         {"cosine":{"distance":{"steps":-3200}}}]}]}}}"#;
     let experiment = stepscope_sim::Experiment::from_json(json).expect("no problems");
-    let mut recording = crate::trace::stored_run::Recording::default();
+    let mut recording = crate::trace::stored_run::StoredRun::default();
     experiment.run(&mut recording);
     let actual_steps = stepscope_peripheral::trace::steps(&recording.trace, 0);
     let pulses = Pulses::recorded(0, &actual_steps, 16_000_000);

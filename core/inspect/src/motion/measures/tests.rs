@@ -1,5 +1,5 @@
 use super::*;
-use crate::trace::stored_run::Recording;
+use crate::trace::stored_run::StoredRun;
 use alloc::{format, string::String};
 use stepscope_peripheral::trace::steps;
 use stepscope_scenario::{Scenario, Source};
@@ -7,7 +7,7 @@ use stepscope_sim::Experiment;
 
 struct Ran {
     experiment: Experiment,
-    recording: Recording,
+    recording: StoredRun,
     steps: Vec<Step>,
     axis: Axis,
 }
@@ -17,7 +17,7 @@ impl Ran {
         let experiment = Experiment::from_json(json).expect("no problems");
         let scenario = Scenario::from_json(json).expect("reads");
         let Source::Motion(motion) = scenario.source else { panic!("a motion") };
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         experiment.run(&mut recording);
         let steps = steps(&recording.trace, 0);
         Self { experiment, recording, steps, axis: motion.axes[0].clone() }

@@ -343,7 +343,7 @@ fn steps_of(motor: &str, moves: &str) -> (Machine, Vec<stepscope_peripheral::tra
         r#"{{"source":{{"motion":{{"engine":"segments","axes":[{{"motor":{motor},"moves":[{moves}]}}]}}}}}}"#
     );
     let experiment = stepscope_sim::Experiment::from_json(&json).unwrap();
-    let mut recording = crate::trace::stored_run::Recording::default();
+    let mut recording = crate::trace::stored_run::StoredRun::default();
     experiment.run(&mut recording);
     (machine(motor), stepscope_peripheral::trace::steps(&recording.trace, 0))
 }

@@ -60,7 +60,7 @@ pub(crate) fn write_fields(out: &mut impl Write, texts: &[&str]) -> fmt::Result 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use alloc::vec::Vec;
     use stepscope_sim::Experiment;
 
@@ -68,7 +68,7 @@ mod tests {
     fn packets_are_csv_rows_with_quotes_only_where_required() {
         let json = r#"{"bus":{"channels":2},"source":{"packets":{"packets":["8a05"]}}}"#;
         let experiment = Experiment::from_json(json).expect("runs");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         let run = experiment.run(&mut recording);
         recording.packets.finish();
         let table = PacketTable::new(&experiment, &run, 0, &recording.packets);

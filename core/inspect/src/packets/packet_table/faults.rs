@@ -175,7 +175,7 @@ fn count(number: usize, one: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use stepscope_peripheral::wire::frame::emit;
     use stepscope_sim::Experiment;
 
@@ -184,7 +184,7 @@ mod tests {
 
     fn reported(json: &str) -> Reported {
         let experiment = Experiment::from_json(json).expect("no problems");
-        let mut recording = Recording::default();
+        let mut recording = StoredRun::default();
         let run = experiment.run(&mut recording);
         let table = PacketTable::new(&experiment, &run, 0, &recording.packets);
         let first = table.first_faults();

@@ -121,12 +121,12 @@ fn the_pyramid_is_small_compared_with_the_trace() {
 #[test]
 fn the_first_rise_of_a_run_is_found() {
     use crate::trace::changes::{Changes, Edge};
-    use crate::trace::stored_run::Recording;
+    use crate::trace::stored_run::StoredRun;
     use stepscope_peripheral::trace::steps;
     use stepscope_sim::Experiment;
 
     let experiment = Experiment::from_json("{}").expect("the default motion");
-    let mut recording = Recording::default();
+    let mut recording = StoredRun::default();
     experiment.run(&mut recording);
     let mut changes = Changes::default();
     changes.extend(&recording.trace);

@@ -11,31 +11,31 @@
 //! The sigmoid's formula is ln(1 + p*(e^z - 1)) - p*z > c*g (`ramp`) without the logarithm.
 
 use super::Ramp;
-use crate::timing::Double;
+use crate::timing::F106;
 
 #[derive(Clone, Copy)]
 pub(crate) enum ExactRamp {
-    Sigmoid { twice_range: Double, low: Double, scale: Double },
+    Sigmoid { twice_range: F106, low: F106, scale: F106 },
     Bezier,
     Straight,
-    Exponential { constants: Double, scale: Double },
+    Exponential { constants: F106, scale: F106 },
 }
 
 impl Ramp {
     pub(crate) fn exact(&self) -> ExactRamp {
         match self {
             Self::Sigmoid(curve) => {
-                let range = Double::decimal(curve.range);
+                let range = F106::decimal(curve.range);
                 let past_one = range + range.exponential_remainder();
                 let (twice_range, denominator) = (range * 2.0, past_one + 2.0);
-                let low = Double::from(1.0) / denominator;
+                let low = F106::from(1.0) / denominator;
                 ExactRamp::Sigmoid { twice_range, low, scale: twice_range * past_one / denominator }
             }
             Self::Bezier => ExactRamp::Bezier,
             Self::Straight => ExactRamp::Straight,
             Self::Exponential(curve) => {
-                let constants = Double::decimal(curve.constants);
-                let part = constants - (Double::default() - constants).exponential_remainder();
+                let constants = F106::decimal(curve.constants);
+                let part = constants - (F106::default() - constants).exponential_remainder();
                 ExactRamp::Exponential { constants, scale: constants * part }
             }
         }
@@ -43,26 +43,26 @@ impl Ramp {
 }
 
 impl ExactRamp {
-    pub(crate) fn area(self) -> Double {
+    pub(crate) fn area(self) -> F106 {
         match self {
             Self::Exponential { constants, scale } => {
-                (Double::default() - constants).exponential_remainder() / scale
+                (F106::default() - constants).exponential_remainder() / scale
             }
             _ => 0.5.into(),
         }
     }
 
-    pub(crate) fn is_past(self, x: Double, travel: Double) -> bool {
+    pub(crate) fn is_past(self, x: F106, travel: F106) -> bool {
         match self {
             Self::Sigmoid { twice_range, low, scale } => {
                 let (z, area) = (twice_range * x, scale * travel);
                 let remainder = (low * z + area).exponential_remainder();
                 low * z.exponential_remainder() - remainder > area
             }
-            Self::Bezier => x * x * x * (Double::from(1.0) - x * 0.5) > travel,
+            Self::Bezier => x * x * x * (F106::from(1.0) - x * 0.5) > travel,
             Self::Straight => x * x * 0.5 > travel,
             Self::Exponential { constants, scale } => {
-                (Double::default() - constants * x).exponential_remainder() / scale > travel
+                (F106::default() - constants * x).exponential_remainder() / scale > travel
             }
         }
     }

@@ -3,7 +3,7 @@
 
 use crate::curves::cosine::Cosine;
 use crate::curves::curve::{greater, lesser};
-use crate::{Curve, MAX_SPEED, round_half_up, timing::Double};
+use crate::{Curve, MAX_SPEED, round_half_up, timing::F106};
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -16,7 +16,7 @@ pub(super) struct CompensatedSlices {
     /// Start of each slice in s, and the end of the last; rising.
     /// Invariant: at least two entries.
     pub(super) starts_s: Vec<f64>,
-    pub(super) exact_starts_s: Vec<Double>,
+    pub(super) exact_starts_s: Vec<F106>,
     /// Steps before each slice without sign, and all steps.
     /// Invariant: as long as `starts_s`, from 0 to the move's steps, not decreasing.
     pub(super) sums: Vec<u32>,
@@ -95,14 +95,14 @@ impl UncompensatedSlices {
     pub(super) fn fine(&self, top_speed: f64, exact: &Cosine) -> CompensatedSlices {
         let counts = self.without_excess(top_speed, exact.steps().unsigned_abs());
         let plateau_steps = whole_steps(top_speed * self.slice_s);
-        let (exact_slice_s, divisor) = (Double::decimal(self.slice_s), Double::from(plateau_steps.max(1)));
+        let (exact_slice_s, divisor) = (F106::decimal(self.slice_s), F106::from(plateau_steps.max(1)));
         let (mut starts_s, mut exact_starts_s, mut sums) = (Vec::new(), Vec::new(), Vec::new());
         let (mut lost_s, mut lost_steps, mut sum, mut top_rate) = (0.0, 0, 0, 0.0);
         for (index, count) in counts.iter().enumerate() {
             let is_shortened = self.plateau.contains(&index) && *count < plateau_steps;
             let is_removed = is_shortened && *count == 0;
             if !is_removed {
-                let steps_at_top = Double::from(index as u64 * plateau_steps - lost_steps);
+                let steps_at_top = F106::from(index as u64 * plateau_steps - lost_steps);
                 starts_s.push(index as f64 * self.slice_s - lost_s);
                 exact_starts_s.push(exact_slice_s * steps_at_top / divisor);
                 sums.push(sum as u32);
@@ -120,8 +120,8 @@ impl UncompensatedSlices {
             sum += count;
         }
         starts_s.push(exact.duration_s() - lost_s);
-        let lost = exact_slice_s * Double::from(lost_steps) / divisor;
-        exact_starts_s.push(Double::decimal(exact.duration_s()) - lost);
+        let lost = exact_slice_s * F106::from(lost_steps) / divisor;
+        exact_starts_s.push(F106::decimal(exact.duration_s()) - lost);
         sums.push(sum as u32);
         CompensatedSlices { starts_s, exact_starts_s, sums, top_rate }
     }

@@ -226,7 +226,7 @@ fn removes_excess_steps_from_the_plateaus_end_then_from_the_tail() {
         assert!((top_rate - rate).abs() < 1e-12 * rate, "{steps} steps in {duration_s} s: {top_rate}");
         assert_eq!((exact_starts_s.len(), starts_s.len()), (starts.len(), starts.len()));
         for ((found, found_s), start_s) in exact_starts_s.iter().zip(&starts_s).zip(starts) {
-            let off = (*found - Double::decimal(*start_s)).high;
+            let off = (*found - F106::decimal(*start_s)).high;
             assert!(off.abs() < 1e-30, "{found:?} is not {start_s}: {steps} steps in {duration_s} s");
             assert!((found_s - start_s).abs() < 1e-15, "{found_s} is not {start_s}");
         }

@@ -28,14 +28,14 @@ fn a_step_is_due_only_after_its_time() {
                 let crossing = piece.crossing(position);
                 let error_s = max_error.time_s + max_error.travel * crossing.s_per_step;
                 assert!(error_s < 1e-11 * piece.to_s, "{error_s} of {piece:?}");
-                let t = Double::from(crossing.time_s);
+                let t = F106::from(crossing.time_s);
                 let times = [
                     (piece.from_s - 1.0, false),
                     (piece.from_s, false),
                     (piece.to_s, true),
                     (piece.to_s + 1.0, true),
                 ];
-                let times = times.map(|(t, expected)| (Double::from(t), expected));
+                let times = times.map(|(t, expected)| (F106::from(t), expected));
                 let near = [(t - error_s, false), (t + error_s, true)];
                 for (t, expected) in times.into_iter().chain(near) {
                     let found = curve.is_past(index, position, t);
@@ -67,7 +67,7 @@ fn a_curve_that_is_at_a_position_is_not_past_it() {
     for (points, between, index, position, t) in rows {
         let curve = Points::new(points, between).unwrap();
         for (later, is_past, is_at) in [(-1e-27, false, false), (0.0, false, true), (1e-27, true, true)] {
-            let since = Double::from(t) + later;
+            let since = F106::from(t) + later;
             let found = (curve.is_past(index, position, since), curve.is_at(index, position, since));
             assert_eq!(found, (is_past, is_at), "{position} at {t} + {later} of {between:?} {points:?}");
         }
@@ -141,7 +141,7 @@ fn a_half_counts_when_reached_from_below_but_not_when_left_from_above() {
     for (t, expected) in rows {
         let tie = 1e-20;
         let found = [-1e-15, 0.0, 1e-15].map(|later| {
-            let since = |is_later: bool| Double::from(t) + later + if is_later { tie } else { -tie };
+            let since = |is_later: bool| F106::from(t) + later + if is_later { tie } else { -tie };
             curve.due_by(t, 1e-9, since)
         });
         assert_eq!(found, expected, "at {t}");
