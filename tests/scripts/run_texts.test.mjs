@@ -18,7 +18,7 @@ test("the header says what a run does, and what it came to", () => {
     [valid, false, "no result yet"],
     [running, false, "running…"],
     [at(0, 0), true, "planning the motion…"],
-    [at(25, 100), true, "25 %, edges in 5 cycles so far"],
+    [at(25, 100), true, "25 %, 5 cycles with edges so far"],
     [done, false, "12\u202f345 edges · 400 ms"],
     [update(done, { type: "draft", path: "x", text: "", message: "" }), false, "not run: fix the form"],
   ];

@@ -27,6 +27,9 @@ import { compiled } from "./wasm.js";
 const CLOSE_MS = 3000;
 /** Maximum time to open a port, in ms. */
 const OPEN_MS = 20_000;
+
+/** The error of a port that opened after the dialog was left. */
+export class PortLeft extends Error {}
 /** Interval of checks whether the worker has released the streams, in ms. */
 const POLL_MS = 2;
 /** Buffer of the port, in bytes. */
@@ -132,12 +135,12 @@ export function openLive(notify) {
       }
       // Another port may be open by now.
       if (!(await closePort(port)) && !openPort) notify({ closed: true, stuck: true });
-      throw new Error("it is no longer needed.");
+      throw new PortLeft("The port was closed because the dialog was left.");
     });
     const late = sleep(OPEN_MS).then(() => {
       if (isOpen) return;
       endCount += 1;
-      throw new Error("it does not respond.");
+      throw new Error(`the port did not open within ${OPEN_MS / 1000} s.`);
     });
     await Promise.race([opening, late]);
     released = new Promise((resolve) => {

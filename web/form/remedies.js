@@ -101,7 +101,7 @@ function requiredTimes(bus, minCycles, isLineless) {
   const times = {
     pulse_width_cycles: ["STEP high", width],
     dir_setup_cycles: ["DIR set-up", setup],
-    dir_hold_cycles: ["DIR hold", hold],
+    dir_hold_cycles: ["DIR hold after STEP falls", hold],
   };
   if (isLineless) return /** @type {any} */ (times);
   // All pulses of a slot must fit into it.

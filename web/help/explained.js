@@ -16,7 +16,10 @@ export const EXPLAINED = {
     "Motor data for the torque-speed curve: a two-phase hybrid motor on a driver that regulates the current. It does not affect the run. A move that needs more torque than the motor has gets a warning; Study > Torque shows both. The default is the motor of Song, Han, Lu 2021.",
   ],
   "Bus.channels": ["Channel", "One motor driver with its STEP and DIR lines. All channels share EN."],
-  "Bus.dir_hold_cycles": ["DIR hold", "DIR must be stable for this time after STEP falls."],
+  "Bus.dir_hold_cycles": [
+    "DIR hold",
+    "DIR must be stable for this time after STEP falls. Data sheets count from the rise: pulse width + this time.",
+  ],
   "Bus.dir_line": [
     "DIR lines",
     "One DIR line for all motors saves wires. In each slot DIR goes low and motors step left, then DIR goes high and motors step right. This takes at least five cycles.",
@@ -41,7 +44,7 @@ export const EXPLAINED = {
     "Queue",
     "Ticks that wait in the controller, so motion continues while the host is busy. An empty queue during a motion is an underrun.",
   ],
-  "Bus.self_test_cycles": ["Self-test", "After reset the controller tests itself and drops what is sent."],
+  "Bus.self_test_cycles": ["Self-test", "After reset the controller tests itself and drops everything it receives."],
   "Bus.settle_cycles": [
     "Settling time (dp)",
     "Time that the supply current needs to settle after a step, Δt_p in RU 2704486. Staggered pulses are this far apart, or closer if the slot is too short.",
@@ -71,7 +74,7 @@ export const EXPLAINED = {
   "Cosine.duration_s": ["Duration", "Time from the start to the end of the move."],
   "Cosine.method": [
     "Step times",
-    "A small controller reads the curve once per slice and rounds down to whole steps, which are too few in total. Song 2021 therefore scales the curve up and shortens the plateau, so the move ends up to 0.8 % early. Exact step times have no such error.",
+    "A small controller evaluates the curve once per slice and rounds down to whole steps, so it makes too few steps in total. Song 2021 therefore scales the curve up and shortens the plateau, so the move ends up to 0.8 % early. Exact step times have no such error.",
   ],
   "Cosine.ramp_s": [
     "Ramp",
@@ -93,7 +96,10 @@ export const EXPLAINED = {
     "Forced level of the line. A long 0 is a break: the stop bit is missing, and the receiver reports a framing error.",
   ],
   "Glitch.start_cycle": ["Start", "First cycle, counted from reset."],
-  "Host.max_attempts": ["Max attempts", "After this many attempts without a reply the host gives up the controller."],
+  "Host.max_attempts": [
+    "Max attempts",
+    "After this many attempts without a reply the host gives up on the controller.",
+  ],
   "Host.reply_timeout_cycles": [
     "Reply timeout",
     "Without a complete reply in this time the frame is sent again with the same sequence number, so it is not executed twice.",
@@ -262,7 +268,7 @@ export const EXPLAINED = {
   "Staircase.max_speed": ["Table ends above", "The table has rates up to the first one above this value."],
   "Staircase.short_move": [
     "Short moves",
-    "A move that is shorter than both ramps cannot reach its top speed. Zhang 2012 runs it at the start speed; to accelerate to the highest rate that fits is faster.",
+    "A move that is shorter than both ramps cannot reach its top speed. Zhang 2012 runs it at the start speed; accelerating to the highest rate that fits is faster.",
   ],
   "Staircase.start_speed": [
     "Start speed",

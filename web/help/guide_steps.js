@@ -37,7 +37,7 @@ export const STEPS = [
   {
     title: "Share it",
     at: "#share",
-    text: "The link contains the whole experiment. It reproduces the same edges, and the digest proves it. The ? button at the right has keys and help.",
+    text: "The link contains the whole experiment. It reproduces the same edges, and the digest proves it. The ? button on the right shows the keys and the help.",
   },
 ];
 

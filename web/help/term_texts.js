@@ -57,7 +57,7 @@ export const TERMS = {
     },
     led: {
       name: "LED",
-      text: "On: idle with a confirmed position. Fast blinking: alarm. Slow blinking: otherwise.",
+      text: "On: idle with a confirmed position. Fast blinking: alarm. Slow blinking: any other state.",
       from: "zhang",
     },
     hold: {
@@ -122,7 +122,7 @@ export const TERMS = {
     },
     start_stop: {
       name: "Start-stop rate",
-      text: "Highest rate at which the motor starts and stops with its load and without a ramp or lost steps.",
+      text: "Highest rate at which the motor can start and stop its load without a ramp and without losing steps.",
       from: "own",
     },
     pull_out: {
@@ -165,7 +165,7 @@ export const TERMS = {
     },
     device: {
       name: "Device",
-      text: "Sends the experiment to a real controller on a serial port, or answers a host. The table shows each reply with its delay and the delay of the model. “Model” returns to the packets of the run.",
+      text: "Sends the experiment to a real controller on a serial port, or replies to a host. The table shows each reply with its delay and the delay of the model. “Model” returns to the packets of the run.",
       from: "own",
     },
     lead: {

@@ -9,7 +9,7 @@ export function statusText(state, long) {
   const { progress } = state.run;
   if (long && progress?.end_cycle === 0) return "planning the motion…";
   if (long && progress)
-    return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, edges in ${count(progress.records)} cycles so far`;
+    return `${Math.round((100 * progress.cycle) / Math.max(1, progress.end_cycle))} %, ${count(progress.records)} cycles with edges so far`;
   if (blockedBy(state) === "problems") return "not run: fix the form";
   if (!state.result) return state.run.phase === "running" ? "running…" : "no result yet";
   const { edges = 0 } = selected(state) ?? {};

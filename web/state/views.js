@@ -107,7 +107,7 @@ export function isOffered({ offered }, state) {
 }
 
 /**
- * The visible view of an area. Order:  that which was selected, else that which isDefault there, else the first.
+ * The visible view of an area. Order: the selected view, the default one, the first one.
  * @param {State} state @param {string} area
  */
 export function visibleViewOf(state, area) {

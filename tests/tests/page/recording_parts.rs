@@ -124,7 +124,7 @@ fn all_of_a_recording_is_asked_for_once_for_each_width_and_what_fails_is_said_in
         page.eval::<bool>("window.failing = true").await?;
         type_into(&page, "Clock", "8000000").await?;
         says(&page, "at 8 MHz").await?;
-        page.until(&format!("{SAID}?.startsWith('The overview of channel 0 cannot be shown: ')")).await?;
+        page.until(&format!("{SAID}?.startsWith('The overview of channel 0 cannot be loaded: ')")).await?;
         ensure!(!page.eval::<bool>(DRAWN).await?);
         says(&page, "200 steps, 200 right and 0 left").await?;
         page.until(READY).await?;

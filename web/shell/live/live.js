@@ -1,6 +1,6 @@
 /** The device dialog (LIVE H4): streams the experiment to a device, or acts as a device for a host. */
 import { loadStyle, setText } from "../../dom.js";
-import { openLive } from "../../engine/live.js";
+import { openLive, PortLeft } from "../../engine/live.js";
 import { errorMessage } from "../../state/error_message.js";
 import { carryInto } from "./carried_button.js";
 import { beginText, controlsOf, unsettledText } from "./controls.js";
@@ -161,7 +161,12 @@ function createDialog(page) {
     } catch (error) {
       session.running = null;
       if (!session.ended)
-        report(`The port cannot be opened: ${errorMessage(error)} Close other programs that use it.`, true);
+        report(
+          error instanceof PortLeft
+            ? error.message
+            : `The port cannot be opened: ${errorMessage(error)} Close other programs that use it.`,
+          true,
+        );
       show();
       if (sendDueStop()) return;
       front();

@@ -98,7 +98,7 @@ export function createOverview(capture, choose) {
       if (!isCurrent()) return;
       [columns, requestedKey] = [null, ""];
       draw();
-      showCaption(`The overview of channel ${channel.value} cannot be requestedKey: ${errorMessage(error)}.`, true);
+      showCaption(`The overview of channel ${channel.value} cannot be loaded: ${errorMessage(error)}.`, true);
     }
   }
 

@@ -1,4 +1,4 @@
-/** The summary of the motors: whether they follow, and why one losesSteps steps. */
+/** The summary of the motors: whether they follow, and why one loses steps. */
 
 import { element, fill, setText } from "../../dom.js";
 import { Dropped } from "../../engine/request_slots.js";
@@ -62,7 +62,9 @@ export function createSummary({ engine, now, node }) {
 function others({ motors }, channel) {
   const lost = motors.filter(({ slips }, at) => at !== channel && slips > 0).map(({ channel: at }) => at);
   if (motors.length < 2) return "";
-  return lost.length > 0 ? `Motor ${lost.join(", ")} also losesSteps steps.` : "All other motors follow.";
+  if (lost.length === 0) return "All other motors follow.";
+  if (lost.length === 1) return `Motor ${lost[0]} also loses steps.`;
+  return `Motors ${lost.slice(0, -1).join(", ")} and ${lost.at(-1)} also lose steps.`;
 }
 
 /** @param {Report} report @param {State} state */

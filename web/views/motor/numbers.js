@@ -47,7 +47,7 @@ export function showNumbers(root, { plant, motors, self_test }, clock) {
   );
   const table = element(
     "table",
-    { "aria-label": "Numbers of the motors" },
+    { "aria-label": "Results of the motors" },
     element(
       "thead",
       {},

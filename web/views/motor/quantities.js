@@ -24,7 +24,7 @@ export const QUANTITIES = [
     name: "error",
     title: "Following error",
     unit: "full steps",
-    lines: [{ of: "error", label: "lag; red: slip of 4 full steps", ink: "--actual" }],
+    lines: [{ of: "error", label: "error; red: slip of 4 full steps", ink: "--actual" }],
   },
   { name: "speed", title: "Speed", unit: "full steps/s", lines: [{ of: "speed", label: "rotor", ink: "--actual" }] },
   {

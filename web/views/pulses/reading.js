@@ -18,7 +18,7 @@ export function createReading({ engine, now }) {
   /** The last announced sentence, shown until the pointer moves. */
   let announced = "";
   let timer = 0;
-  /** Number of announced sentenceCount; a reply that arrives after a newer sentence is dropped. */
+  /** Number of announced sentences; a reply that arrives after a newer sentence is dropped. */
   let sentenceCount = 0;
 
   /** @param {State} state */

@@ -98,11 +98,11 @@ export function modelNote({ window_s, ramps, jump }) {
       ? ""
       : `The acceleration of steps is averaged over the natural period of the rotor, ${si(window_s, "s")}. `;
   const ramp = ramps.length
-    ? "Enough torque: ramps for which the torque suffices. Longest ramp for the rate limit: T − n/f_s (ramps of area 1/2), where f_s is the maximum rate with the load; the longest possible ramp is T/2. "
+    ? "Enough torque: ramps for which the torque suffices. Longest ramp for the rate limit: T − n/f_s, for ramps whose mean rate is half the peak rate; f_s is the maximum rate with the load. The longest possible ramp is T/2. "
     : "";
   const jumps =
     jump > 0 ? "A motor follows a jump of speed up to its start-stop rate, which is not part of these data. " : "";
-  return `${window}${ramp}${jumps}The model has fundamental waves only: no saturation, no iron or friction losses, no resonance.`;
+  return `${window}${ramp}${jumps}The model includes only the fundamental wave: no saturation, no iron or friction losses, no resonance.`;
 }
 
 /** @param {number} channel @param {string} motor  Name of a motor of the list; empty for the channel's own. @param {Report} report */

@@ -72,7 +72,7 @@ function through({ angle_deg, height }, { amplitude, period_s, periods }) {
   const maxPoints = maxLengthOf("Points", "points");
   const quarter = angle_deg.length - 1;
   if (4 * quarter * periods + 1 > maxPoints)
-    return `${counted(periods, "period")} of ${count(4 * quarter)} vertices exceed the ${count(maxPoints)} points of a move; use at maxPoints ${count(Math.floor((maxPoints - 1) / (4 * quarter)))} periods.`;
+    return `${counted(periods, "period")} of ${count(4 * quarter)} vertices exceed the ${count(maxPoints)} points of a move; use at most ${count(Math.floor((maxPoints - 1) / (4 * quarter)))} periods.`;
   const half = [...angle_deg.keys()].map((i) => [angle_deg[i], height[i]]);
   const down = [
     ...half,

@@ -37,10 +37,10 @@ fields! {
             .term("DIR set-up", "DIR must be stable for this time before STEP rises. Otherwise the driver may step in the old direction.")
             .from(SHEETS),
         /// H: from the fall of STEP to the change of DIR.
-        dir_hold_cycles: u32 => label("DIR hold")
+        dir_hold_cycles: u32 => label("DIR hold after STEP falls")
             .unit("cycles")
             .whole(limits::DIR_HOLD_CYCLES)
-            .term("DIR hold", "DIR must be stable for this time after STEP falls.")
+            .term("DIR hold", "DIR must be stable for this time after STEP falls. Data sheets count from the rise: pulse width + this time.")
             .from(SHEETS),
         /// Position of the steps in a tick.
         distribution: Distribution => label("Steps in a tick")
@@ -71,7 +71,7 @@ fields! {
         /// Self-test after reset. Packets that end during it are dropped; framed ticks get the reply BUSY.
         self_test_cycles: u32 => label("Self-test")
             .unit("cycles")
-            .term("Self-test", "After reset the controller tests itself and drops what is sent.")
+            .term("Self-test", "After reset the controller tests itself and drops everything it receives.")
             .from(PATENT),
     }
 }

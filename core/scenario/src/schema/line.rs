@@ -81,7 +81,7 @@ settings! {
         /// Attempts per frame before the host gives up.
         pub max_attempts: u8 = 10 => label("Max attempts")
             .whole(1..=255)
-            .term("Max attempts", "After this many attempts without a reply the host gives up the controller.")
+            .term("Max attempts", "After this many attempts without a reply the host gives up on the controller.")
             .from(OWN)
             .when_at("line.protocol", "framed"),
     }

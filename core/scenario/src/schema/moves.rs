@@ -151,7 +151,7 @@ fields! {
             .from(ZHANG),
         /// Moves that are too short for the top speed.
         short_move: ShortMove => label("Short moves")
-            .term("Short moves", "A move that is shorter than both ramps cannot reach its top speed. Zhang 2012 runs it at the start speed; to accelerate to the highest rate that fits is faster.")
+            .term("Short moves", "A move that is shorter than both ramps cannot reach its top speed. Zhang 2012 runs it at the start speed; accelerating to the highest rate that fits is faster.")
             .from(ZHANG),
         /// First rate of the table, f_1.
         start_speed: Speed => START_SPEED,
@@ -172,7 +172,7 @@ fields! {
         ramp_s: f64 => RAMP,
         /// How step times are computed.
         method: CosineMethod => label("Step times")
-            .term("Step times", "A small controller reads the curve once per slice and rounds down to whole steps, which are too few in total. Song 2021 therefore scales the curve up and shortens the plateau, so the move ends up to 0.8 % early. Exact step times have no such error.")
+            .term("Step times", "A small controller evaluates the curve once per slice and rounds down to whole steps, so it makes too few steps in total. Song 2021 therefore scales the curve up and shortens the plateau, so the move ends up to 0.8 % early. Exact step times have no such error.")
             .from(SONG),
         /// Length of a slice; 0.001 in Song 2021.
         slice_s: f64 => label("Slice")
