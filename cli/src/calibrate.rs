@@ -96,7 +96,7 @@ fn digits(number: f64, decimals: usize) -> String {
 fn print_fit(fit: &Fit, pairs: &[Pair], out: &mut impl Write) -> io::Result<()> {
     let k = fit.steps_per_unit;
     writeln!(out, "  k                 {} steps/mm, {} mm per step", digits(k, 6), digits(1.0 / k, 9))?;
-    writeln!(out, "  r.m.s. residual   {:.3} steps, {:.6} mm", fit.rms(), fit.rms() / k)?;
+    writeln!(out, "  RMS residual      {:.3} steps, {:.6} mm", fit.rms(), fit.rms() / k)?;
     let Some((index, largest)) = fit.largest() else { return Ok(()) };
     let length = pairs.get(index).map_or(0.0, |pair| pair.length);
     writeln!(out, "  largest residual  {largest:.3} steps, {:.6} mm, at {length} mm", largest / k)

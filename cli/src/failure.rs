@@ -4,7 +4,7 @@ use crate::{suggest, terminal::Escaped};
 use std::path::{Path, PathBuf};
 use std::{fmt, io, process::ExitCode};
 use stepscope_core::inspect::export::vcd::TooCoarse;
-use stepscope_core::scenario::{MAX_TEXT_BYTES, Problem, ValueError, link::LinkError};
+use stepscope_core::scenario::{Cause, MAX_TEXT_BYTES, Problem, ValueError, link::LinkError};
 
 pub(crate) const INTERRUPTED: u8 = 130;
 
@@ -19,8 +19,6 @@ pub(crate) enum Failure {
     Truncated(PathBuf, String),
     /// The command line is invalid; the text says why.
     Option(String),
-    /// The output, and why it cannot be used.
-    Output(PathBuf, &'static str),
     /// A scenario, a table or a recording does not fit the command; the text says why.
     Invalid(PathBuf, String),
     /// The file, and the maximum bytes.
@@ -110,7 +108,6 @@ impl Failure {
             Self::LostPort(_) => 4,
             Self::Interrupted => INTERRUPTED,
             Self::Option(_)
-            | Self::Output(..)
             | Self::Invalid(..)
             | Self::TooLong(..)
             | Self::Scenario(..)
@@ -130,9 +127,14 @@ pub(crate) fn no_plant(path: &Path) -> Failure {
 /// The problem; for an unknown field, with the most similar name.
 pub(crate) fn with_hint(problem: &Problem) -> String {
     let text = problem.to_string();
-    let Some((_, names)) = text.rsplit_once("unknown field; use one of ") else { return text };
-    let hint = problem.path.rsplit('.').next().map(|name| suggest::hint(name, names.split(", ")));
-    text.clone() + &hint.unwrap_or_default()
+    // Already the first characters are not those of an object.
+    if matches!(problem.cause, Cause::Syntax { line: 1, column: 1 | 2, .. }) {
+        return format!("not a scenario: {text}; open a recording with stepscope capture");
+    }
+    let Some((before, names)) = text.rsplit_once("unknown field; use one of ") else { return text };
+    let name = problem.path.rsplit('.').next().unwrap_or_default();
+    let hint = suggest::hint(name, names.split(", "));
+    format!("{before}unknown field{hint}; use one of {names}")
 }
 
 impl fmt::Display for Failure {
@@ -151,7 +153,6 @@ impl fmt::Display for Failure {
                 Escaped::path(path)
             ),
             Self::Option(why) | Self::Check(why) => f.write_str(why),
-            Self::Output(path, why) => write!(f, "{}: {why}", Escaped::path(path)),
             Self::Invalid(path, why) => write!(f, "{}: {why}", Escaped::path(path)),
             Self::TooLong(path, max) => {
                 let path = Escaped::path(path);

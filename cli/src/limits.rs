@@ -281,10 +281,12 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let invalid = |why: String| Failure::Invalid(common.scenario.clone(), why);
     let [from, to, step] = [arguments.from, arguments.to, arguments.step].map(Rate::get);
     let count = (to - from) / step + 1e-9;
-    if !(to >= from && count < MAX_RATES) {
-        return Err(invalid(format!(
-            "--from {from} --to {to} --step {step}: out of range; use a --to of at least --from, and at most {MAX_RATES} rates"
-        )));
+    if to < from {
+        return Err(Failure::Option(format!("--to: {to} is below --from {from}; use {from} or more")));
+    }
+    if count >= MAX_RATES {
+        let why = format!("--step: {step} gives more than {MAX_RATES} rates; use a larger step");
+        return Err(Failure::Option(why));
     }
     let (_, _, motors) = distinct_motors(common)?;
     let rates: Vec<f64> = (0..=count as u64).map(|index| from + index as f64 * step).collect();

@@ -9,7 +9,7 @@
 //! Until the commit an error, a full disk, Ctrl-C or a kill leaves the existing files. If a file cannot be renamed, all
 //! temporary files are kept. Pipes and devices are written directly.
 
-use crate::{failure::Failure, pipe, progress};
+use crate::{failure::Failure, pipe, progress, terminal::Escaped};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -117,37 +117,46 @@ mod identity {
 }
 
 impl Outputs {
+    /// Each output has the name of its option.
+    ///
     /// # Errors
-    /// [`Failure::Output`] if an output is another output or an input.
+    /// [`Failure::Option`] if an output is another output or an input.
     pub(crate) fn check<'p>(
         inputs: impl IntoIterator<Item = &'p (impl AsRef<Path> + ?Sized + 'p)>,
-        outputs: impl IntoIterator<Item = &'p Path>,
+        outputs: impl IntoIterator<Item = (&'p str, &'p Path)>,
     ) -> Result<Self, Failure> {
         let inputs: Vec<Identity> =
             inputs.into_iter().filter_map(|path| Identity::of_input(path.as_ref())).collect();
-        let mut before: Vec<(&Path, Option<Identity>)> = Vec::new();
-        for path in outputs {
+        let mut before: Vec<(&str, &Path, Option<Identity>)> = Vec::new();
+        for (option, path) in outputs {
             let identity = Identity::of_output(path);
+            let option_name = option.replace('_', "-");
             let is_standard = |path: &Path| path == Path::new(STANDARD);
             let same = |other: &Option<Identity>| identity.is_some() && *other == identity;
-            if let Some((other, _)) =
-                before.iter().find(|(other, known)| same(known) || is_standard(other) && is_standard(path))
+            let mut earlier = before.iter();
+            if let Some((other_option, other, _)) =
+                earlier.find(|(_, other, known)| same(known) || is_standard(other) && is_standard(path))
             {
-                let detail = if is_standard(other) || is_standard(path) {
-                    "standard output already has another output; use files for the others"
+                let other_name = other_option.replace('_', "-");
+                return Err(Failure::Option(if is_standard(other) || is_standard(path) {
+                    format!(
+                        "--{option_name}: standard output is already used by --{other_name}; use a file for one of them"
+                    )
                 } else {
-                    "would be written twice; use a separate file for each output"
-                };
-                return Err(Failure::Output(path.to_owned(), detail));
+                    format!(
+                        "--{option_name}: {} is already the output of --{other_name}; use a separate file for each output",
+                        Escaped::path(path)
+                    )
+                }));
             }
             // A terminal may be input and output.
             if identity.as_ref().is_some_and(|identity| inputs.contains(identity)) && is_file(path) {
-                return Err(Failure::Output(
-                    path.to_owned(),
-                    "is an input and would be overwritten; use another file",
-                ));
+                return Err(Failure::Option(format!(
+                    "--{option_name}: {} is an input and would be overwritten; use another file",
+                    Escaped::path(path)
+                )));
             }
-            before.push((path, identity));
+            before.push((option, path, identity));
         }
         Ok(Self::default())
     }
@@ -173,6 +182,14 @@ impl Outputs {
             // A read-only file must not be replaced.
             fs::OpenOptions::new().append(true).open(&name)?;
         }
+        let parent = folder(&name);
+        if !parent.exists() {
+            let why = format!(
+                "the folder {} does not exist; create it, or use another path",
+                Escaped::path(parent)
+            );
+            return Err(io::Error::new(io::ErrorKind::NotFound, why));
+        }
         let mut start = name.file_name().ok_or(io::ErrorKind::InvalidInput)?.to_owned();
         // A name has at most 255 bytes.
         if start.len() > 200 {
@@ -186,7 +203,9 @@ impl Outputs {
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         // Registered before Ctrl-C can interrupt.
         let mut temporaries = lock();
-        let (file, temporary) = builder.tempfile_in(folder(&name))?.into_parts();
+        // Without the temporary name, which is in the original message.
+        let created = builder.tempfile_in(parent).map_err(|error| io::Error::from(error.kind()))?;
+        let (file, temporary) = created.into_parts();
         temporaries.push(temporary.to_path_buf());
         drop(temporaries);
         if let Some(known) = known {
@@ -422,11 +441,14 @@ mod tests {
         };
         let record = folder.path().join("record");
         for inputs in [&["-"] as &[&str], &["-", "/dev/null"]] {
-            drop(Outputs::check(inputs.iter().copied(), [record.as_path(), &link]).expect("two files"));
+            drop(
+                Outputs::check(inputs.iter().copied(), [("record", record.as_path()), ("pty", &link)])
+                    .expect("two files"),
+            );
             assert!(!was_opened(), "{inputs:?}");
         }
-        let twice = Outputs::check(["-"], [link.as_path(), Path::new(&name)]);
-        assert!(matches!(twice, Err(Failure::Output(..))), "one terminal by two names");
+        let twice = Outputs::check(["-"], [("record", link.as_path()), ("pty", Path::new(&name))]);
+        assert!(matches!(twice, Err(Failure::Option(_))), "one terminal by two names");
         assert!(!was_opened());
         drop(fs::File::open(&link).expect("it opens"));
         assert!(was_opened(), "the test sees an opening");

@@ -61,8 +61,7 @@ pub(crate) fn of(command: &str) -> Option<&'static Paths> {
 /// Checks the paths of a command line.
 ///
 /// # Errors
-/// [`Failure::Output`] if an output is an input or another output, [`Failure::Option`] if two inputs are standard
-/// input.
+/// [`Failure::Option`] if an output is an input or another output, or if two inputs are standard input.
 pub(crate) fn check(matches: &ArgMatches) -> Result<(), Failure> {
     let (mut name, mut inner) = (String::new(), matches);
     while let Some((command, arguments)) = inner.subcommand() {
@@ -71,21 +70,22 @@ pub(crate) fn check(matches: &ArgMatches) -> Result<(), Failure> {
     }
     let Some(paths) = of(name.trim_start()) else { return Ok(()) };
     let given = |ids: &'static [&'static str]| {
-        ids.iter()
-            .filter_map(|id| inner.try_get_many::<PathBuf>(id).ok().flatten())
-            .flatten()
-            .map(PathBuf::as_path)
+        ids.iter().flat_map(|id| {
+            let values = inner.try_get_many::<PathBuf>(id).ok().flatten();
+            values.into_iter().flatten().map(|path| (*id, path.as_path()))
+        })
     };
-    if let Some(path) = given(&["pty", "dir"]).find(|path| *path == Path::new(STANDARD)) {
-        let detail = "standard output is not a link or a folder; use the name of one";
-        return Err(Failure::Output(path.to_owned(), detail));
+    let is_standard = |(_, path): &(&str, &Path)| *path == Path::new(STANDARD);
+    if let Some((option, _)) = given(&["pty", "dir"]).find(is_standard) {
+        let why = format!("--{option}: standard output is not a link or a folder; use the name of one");
+        return Err(Failure::Option(why));
     }
-    if given(paths.read).filter(|path| *path == Path::new(STANDARD)).count() > 1 {
+    if given(paths.read).filter(is_standard).count() > 1 {
         let why = "-: standard input can be read only once; use files for the other inputs";
         return Err(Failure::Option(why.to_owned()));
     }
     // JSON goes to standard output unless there is --out.
     let table = inner.try_get_one::<bool>("json").ok().flatten().is_some_and(|json| *json);
-    let table = (table && !paths.written.contains(&"out")).then_some(Path::new(STANDARD));
-    Outputs::check(given(paths.read), given(paths.written).chain(table)).map(drop)
+    let table = (table && !paths.written.contains(&"out")).then_some(("json", Path::new(STANDARD)));
+    Outputs::check(given(paths.read).map(|(_, path)| path), given(paths.written).chain(table)).map(drop)
 }

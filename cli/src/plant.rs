@@ -192,13 +192,13 @@ fn print<S: Sink, O: Observer>(
     writeln!(out, "plant digest     {:016x}", result.digest)?;
     writeln!(out, "simulated to     {:.3} ms, cycle {}", ms(result.cycle, clock_hz), result.cycle)?;
     let (load, bus) = (&result.load_a, &result.bus_v);
-    writeln!(out, "supply current   {:.3} to {:.3} A, r.m.s. {:.3} A", load.min, load.max, load.rms())?;
+    writeln!(out, "supply current   {:.3} to {:.3} A, RMS {:.3} A", load.min, load.max, load.rms())?;
     writeln!(out, "bus              {:.3} to {:.3} V", bus.min, bus.max)?;
     if let Some(found) = &result.deviation {
         let Deviation { rest_a, above_a, below_a } = found;
         writeln!(
             out,
-            "  deviation      +{above_a:.3} A, -{below_a:.3} A from {rest_a:.3} A at rest, as the sensor measures it"
+            "  deviation      +{above_a:.3} A, -{below_a:.3} A from the idle {rest_a:.3} A, at the sensor"
         )?;
     }
     if let Some(at) = result.collapsed {
@@ -237,7 +237,7 @@ fn print<S: Sink, O: Observer>(
 fn print_motor(out: &mut impl Write, channel: usize, motor: &MotorResult, clock_hz: u32) -> io::Result<()> {
     writeln!(out, "motor {channel}          {}", verdict(motor, clock_hz))?;
     let Peak { value: following, cycle: at } = motor.following_error;
-    writeln!(out, "  following error {following:+.4} full steps at most, at {:.3} ms", ms(at, clock_hz))?;
+    writeln!(out, "  following error maximum {following:+.4} full steps, at {:.3} ms", ms(at, clock_hz))?;
     writeln!(
         out,
         "  at the end     {:.4} full steps of {:.4}, off by {:+.4}",
@@ -264,7 +264,7 @@ fn print_motor(out: &mut impl Write, channel: usize, motor: &MotorResult, clock_
     if motor.slip_count > MAX_SLIPS as u64 {
         writeln!(out, "  slips          {} in all", motor.slip_count)?;
     }
-    writeln!(out, "  phase current  {:.3} A at most, r.m.s. {:.3} A", motor.phase_peak_a, motor.phase_rms_a)?;
+    writeln!(out, "  phase current  maximum {:.3} A, RMS {:.3} A", motor.phase_peak_a, motor.phase_rms_a)?;
     let energy = &motor.energy;
     writeln!(
         out,

@@ -57,8 +57,7 @@ fn scenario_text(path: &Path) -> Result<String, Failure> {
                 let samples = SAMPLES.iter().map(|sample| sample.id);
                 let names = all_presets().map(|preset| preset.id).chain(samples);
                 let hint = suggest::hint(&path.to_string_lossy(), names);
-                let why =
-                    format!("no file or preset of this name; `stepscope presets` lists the presets{hint}");
+                let why = format!("no file or preset of this name{hint}; `stepscope presets` lists all");
                 Failure::Unusable(path.display().to_string(), why)
             })
         }
@@ -130,7 +129,7 @@ pub(crate) fn presets(arguments: &PresetsArguments) -> Result<(), Failure> {
         Some(id) => {
             let preset = preset(id).ok_or_else(|| {
                 let hint = suggest::hint(id, all_presets().map(|preset| preset.id));
-                let why = format!("no preset of this name; `stepscope presets` lists the presets{hint}");
+                let why = format!("no preset of this name{hint}; `stepscope presets` lists all");
                 Failure::Invalid(PathBuf::from(id), why)
             })?;
             terminal::json(preset.json.trim_end()) + "\n"

@@ -19,6 +19,9 @@ pub(crate) fn steps_of_table(text: &str, clock_hz: u32) -> Result<Vec<ScheduledS
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let head = reader.headers().map_err(|error| error.to_string())?.clone();
     let column = |name: &str| head.iter().position(|found| found.eq_ignore_ascii_case(name));
+    if column("position").is_some() && column(DIRECTION).or_else(|| column(DIRECTION_IN_FULL)).is_none() {
+        return Err("line 1: the table has positions, not step times; use stepscope points".to_owned());
+    }
     let found = TIMES.iter().find_map(|(name, per_second)| Some((*name, column(name)?, *per_second)));
     let Some((name, time_at, per_second)) = found else {
         let given = head.iter().collect::<Vec<_>>().join(", ");
@@ -106,6 +109,10 @@ mod tests {
         let rows = [
             ("1\n2\n", "the first line has the columns \"1\""),
             ("cycle\n", "no step"),
+            (
+                "time_s,position\n0,0\n",
+                "line 1: the table has positions, not step times; use stepscope points",
+            ),
             ("cycle\n5\n4\n", "line 3: cycle: 4 is before the line above"),
             ("cycle,dir\n5,up\n", "line 2: dir: \"up\" is not a direction; use 1 or right, 0 or left"),
             ("time_s\nsoon\n", "line 2: time_s: \"soon\" is out of range; use 0 to"),

@@ -67,6 +67,11 @@ fn parse_limits(fields: &str) -> Result<TimingRules, String> {
         let (name, ns) =
             field.split_once('=').ok_or_else(|| format!("{field:?}: no \"=\"; {}", allowed_limits()))?;
         let (name, ns) = (name.trim(), ns.trim());
+        let names = Rule::ALL.map(|rule| format!("{}_ns", rule.name()));
+        if names.iter().all(|known| known != name) {
+            let hint = suggest::hint(name, names.iter().map(String::as_str));
+            return Err(format!("unknown limit {name}{hint}; {}", allowed_limits()));
+        }
         let value: u64 = ns
             .parse()
             .map_err(|_| format!("{name}: {ns:?} is not a whole number of ns; {}", allowed_limits()))?;
@@ -89,15 +94,17 @@ fn parse_rules(found: Value) -> Result<TimingRules, String> {
         Some(driver) => Ok(drivers::rules(driver)),
         None => {
             let problems: Vec<String> = problems.iter().map(with_hint).collect();
-            let problems = if problems.is_empty() { "no limits".to_owned() } else { problems.join("; ") };
-            Err(format!("{problems}; {}", allowed_limits()))
+            if problems.is_empty() {
+                return Err(format!("no limits; {}", allowed_limits()));
+            }
+            Err(problems.join("; ").replace("driver_timing.rules.", ""))
         }
     }
 }
 
 fn allowed_limits() -> String {
     let fields = Rule::ALL.map(|rule| format!("{}_ns", rule.name())).join(", ");
-    format!("use {fields}, each 0 to 1000000000")
+    format!("use {fields}, each 0 to 1000000000 ns")
 }
 
 impl Options {

@@ -203,7 +203,7 @@ fn rejects_reversed_ranges_and_indexes_out_of_range() {
         ),
         (
             &["resonance", "resonance-full-steps", "--from", "3", "--to", "2"],
-            "--from 3 --to 2 --step 4: out of range; use a --to of at least --from",
+            "--to: 2 is below --from 3; use 3 or more",
         ),
         (
             &["settling", "resonance-full-steps", "--t-step", "1"],

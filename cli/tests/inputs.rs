@@ -128,21 +128,62 @@ fn accepts_whole_numbers_with_decimals_or_exponents() {
 }
 
 #[test]
+fn names_the_command_for_another_kind_of_file() {
+    let steps = "time_us,dir\n22361,right\n31623,right\n";
+    let rows: &[(&[&str], &str, &str)] = &[
+        (&["run", "-"], "$date today $end\n", "expected value; open a recording with stepscope capture"),
+        (
+            &["capture", "-"],
+            steps,
+            "a table of step times, not of levels; use it with stepscope tables --steps",
+        ),
+        (
+            &["tables", "--steps", "-"],
+            "time_s,position\n0,0\n0.1,40\n",
+            "line 1: the table has positions, not step times; use stepscope points",
+        ),
+    ];
+    for (arguments, input, expected) in rows {
+        let (code, out, err) = stepscope(arguments, input);
+        assert!(matches!(code, Some(1 | 2)), "{arguments:?}: {code:?} {out}");
+        assert!(err.contains(expected), "{arguments:?}: {err}");
+    }
+}
+
+/// Segments have no line, so an address would not help.
+#[test]
+fn reports_only_the_controllers_that_segments_cannot_have() {
+    let scenario = r#"{"source":{"segments":{"channels":[{"segments":[{"dwell":{}}]}]}},"controllers":[{}]}"#;
+    let (code, _, err) = stepscope(&["run", "-"], scenario);
+    assert_eq!(code, Some(2), "{err}");
+    assert_eq!(
+        err.lines().skip(1).collect::<Vec<_>>(),
+        ["  controllers: segments run only one controller; remove the others, or choose ticks"]
+    );
+}
+
+#[test]
 fn states_the_allowed_range_for_a_wrong_type() {
     for (given, expected) in [
-        (r#"{"clock_hz":-1}"#, "clock_hz: -1; use a whole number from 11 to 1000000000 Hz"),
-        (r#"{"clock_hz":16000000.5}"#, "clock_hz: 16000000.5; use a whole number from 11 to 1000000000 Hz"),
-        (r#"{"bus":{"slots":300}}"#, "bus.slots: 300; use a whole number from 1 to 127"),
+        (r#"{"clock_hz":-1}"#, "clock_hz: -1 is out of range; use 11 to 1000000000 Hz"),
+        (r#"{"clock_hz":16000000.5}"#, "clock_hz: 16000000.5 is not a whole number; use 11 to 1000000000 Hz"),
+        (r#"{"bus":{"slots":300}}"#, "bus.slots: 300 is out of range; use 1 to 127"),
         (
             r#"{"bus":{"channels":"four"}}"#,
-            "bus.channels: \u{201c}four\u{201d}; use a whole number from 1 to 16",
+            "bus.channels: \u{201c}four\u{201d} is not a whole number; use 1 to 16",
         ),
-        (r#"{"run_cycles":1e30}"#, "run_cycles: 1e30; use a whole number from 1 to 9000000000000000 cycles"),
-        (r#"{"title":5}"#, "title: 5; use a text of 0 to 120 characters"),
-        (r#"{"controllers":{}}"#, "controllers: an object; use a list of 0 to 31 additional controllers"),
-        (r#"{"version":"x"}"#, "version: \u{201c}x\u{201d}; use a whole number: 1 to 3"),
-        (r#"{"analysis":{"sensor_hz":"x"}}"#, "analysis.sensor_hz: \u{201c}x\u{201d}; use a number from "),
-        (r#"{"title":"\ud800"}"#, "title: a text with half of a surrogate pair; use a text of 0 to 120"),
+        (r#"{"run_cycles":1e30}"#, "run_cycles: 1e30 is out of range; use 1 to 9000000000000000 cycles"),
+        (r#"{"title":5}"#, "title: 5 is not valid; use a text of 0 to 120 characters"),
+        (
+            r#"{"controllers":{}}"#,
+            "controllers: an object is not valid; use a list of 0 to 31 additional controllers",
+        ),
+        (r#"{"version":"x"}"#, "version: \u{201c}x\u{201d} is not a whole number; use 1 to 3"),
+        (r#"{"analysis":{"sensor_hz":"x"}}"#, "analysis.sensor_hz: \u{201c}x\u{201d} is not a number; use "),
+        (
+            r#"{"title":"\ud800"}"#,
+            "title: a text with half of a surrogate pair is not valid; use a text of 0 to 120",
+        ),
     ] {
         let (code, _, err) = stepscope(&["run", "-"], given);
         assert_eq!(code, Some(2), "{given}");

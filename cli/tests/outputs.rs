@@ -54,8 +54,8 @@ fn rejects_an_output_that_is_an_input_or_another_output() {
         std::os::unix::fs::symlink("new.vcd", folder.join("soft.vcd")).expect("a link");
     }
     let input = "is an input and would be overwritten";
-    let twice = "would be written twice";
-    let standard = "standard output already has another output";
+    let twice = " is already the output of --";
+    let standard = ": standard output is already used by --";
     let rows: &[(&[&str], &str)] = &[
         (&["run", "in.json", "--trace", "in.json"], input),
         (&["run", "in.json", "--line", "./sub/../in.json"], input),
@@ -87,6 +87,15 @@ fn rejects_an_output_that_is_an_input_or_another_output() {
     assert_eq!(fs::read_to_string(folder.join("old.csv")).expect("a file"), "old");
 }
 
+#[test]
+fn names_a_folder_that_does_not_exist() {
+    let folder = folder("missing");
+    fs::write(folder.join("in.json"), "{}").expect("a file");
+    let (code, out, err) = in_folder(&folder, &["run", "in.json", "--vcd", "nope/x.vcd"]);
+    assert_eq!((code, out.as_str()), (Some(1), ""));
+    assert_eq!(err, "nope/x.vcd: the folder nope does not exist; create it, or use another path\n");
+}
+
 /// A compared scenario is an input, too.
 #[test]
 fn capture_does_not_overwrite_the_compared_scenario() {
@@ -96,7 +105,7 @@ fn capture_does_not_overwrite_the_compared_scenario() {
         let arguments = ["capture", "recorded-step-table", "--against", "s.json", output, "s.json"];
         let (code, out, err) = in_folder(&folder, &arguments);
         assert_eq!((code, out.as_str()), (Some(2), ""), "{output}");
-        assert!(err.starts_with("s.json: is an input and would be overwritten"), "{err}");
+        assert!(err.contains(": s.json is an input and would be overwritten"), "{err}");
     }
     let (code, _, err) = in_folder(&folder, &["tables", "in.json", "--steps", "s.json", "--out", "./s.json"]);
     assert!(code == Some(2) && err.contains("is an input"), "{err}");

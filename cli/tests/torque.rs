@@ -14,7 +14,7 @@ fn reports_enough_torque_and_the_longest_ramp() {
     let expected = "\
 axis 0
   full torque      282.8 mN*m, up to 30945 steps/s
-  maximum rate     any rate with a load of 0.0 mN*m
+  maximum rate     not limited by torque (load 0.0 mN*m)
   working rate     19200 steps/s, as specified
   minimum margin   281.7 mN*m: at 0.100000 s, 8000 steps/s, 1.1 needed of 282.8 mN*m
   enough torque throughout

@@ -3,7 +3,7 @@
 use super::advice;
 use crate::options::{Json, ShowProgress};
 use crate::quantity::{ExactMicroseconds, Microseconds, parsed, whole};
-use crate::{failure::Failure, motors::NamedMotor, timing};
+use crate::{failure::Failure, motors::NamedMotor, terminal::Escaped, timing};
 use clap::{ArgGroup, Args};
 use std::path::{Path, PathBuf};
 use stepscope_core::capture::{read::Base, uart};
@@ -145,6 +145,9 @@ impl Arguments {
 
     pub(super) fn open_failure(&self, error: &OpenError) -> Failure {
         let option = match error {
+            OpenError::Map(error) => {
+                return Failure::Option(format!("--map: {}", Escaped(error.to_string())));
+            }
             OpenError::NoSampleRate(_) => " (--sample-rate HZ)".to_owned(),
             OpenError::NoBaud => " (--baud BAUD)".to_owned(),
             OpenError::NoMap { names, example } => {

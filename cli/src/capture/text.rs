@@ -88,7 +88,7 @@ fn print_comparison(out: &mut impl Write, comparison: &PlanComparison) -> io::Re
     let us = |seconds: f64| seconds * 1e6;
     writeln!(
         out,
-        "  late: {:.3} us at most ({one} {}, at {} s), {:.3} us r.m.s., {:.3} us mean",
+        "  late: maximum {:.3} us ({one} {}, at {} s), RMS {:.3} us, mean {:.3} us",
         us(found.largest.late_s),
         found.largest.step,
         found.largest.recorded_s,
@@ -97,7 +97,7 @@ fn print_comparison(out: &mut impl Write, comparison: &PlanComparison) -> io::Re
     )?;
     writeln!(
         out,
-        "  drift {:.2} ppm; jitter {:.3} us at most, {:.3} us r.m.s.{}",
+        "  drift {:.2} ppm; jitter maximum {:.3} us, RMS {:.3} us{}",
         found.drift_ppm,
         us(found.largest_jitter_s),
         us(found.rms_jitter_s),
@@ -108,12 +108,16 @@ fn print_comparison(out: &mut impl Write, comparison: &PlanComparison) -> io::Re
         }
     )?;
     let within = us(comparison.tolerance.seconds());
-    match found.differing {
-        0 => writeln!(out, "  no {one} is off by more than {within:.3} us")?,
+    let (differing, compared) = (found.differing, found.compared);
+    match (differing, found.other_values) {
+        (0, _) => writeln!(out, "  no {one} is off by more than {within:.3} us")?,
+        (1, 0) => writeln!(out, "  1 of {compared} matched {what} is off by more than {within:.3} us")?,
+        (_, 0) => {
+            writeln!(out, "  {differing} of {compared} matched {what} are off by more than {within:.3} us")?
+        }
         _ => writeln!(
             out,
-            "  {} of {} {what} differ, or are off by more than {within:.3} us",
-            found.differing, found.compared
+            "  {differing} of {compared} matched {what} have another value or are off by more than {within:.3} us"
         )?,
     }
     let differences = &comparison.result.differences;

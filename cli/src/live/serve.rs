@@ -75,12 +75,14 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let times = arguments.record.as_deref().map(times_path);
     let paths = || arguments.record.iter().chain(&times).map(PathBuf::as_path);
     if let Some(path) = paths().find(|path| !output::can_be_file(path)) {
-        let detail =
-            "not a file; a recording has two, NAME.json and NAME.session.json; use --record NAME.json";
-        return Err(Failure::Output(path.to_owned(), detail));
+        let why = format!(
+            "--record: {} is not a file; a recording has two, NAME.json and NAME.session.json; use --record NAME.json",
+            Escaped::path(path)
+        );
+        return Err(Failure::Option(why));
     }
-    let link = arguments.pty.iter().flatten().map(PathBuf::as_path);
-    let mut outputs = Outputs::check(Some(path), paths().chain(link))?;
+    let link = arguments.pty.iter().flatten().map(|link| ("pty", link.as_path()));
+    let mut outputs = Outputs::check(Some(path), paths().map(|path| ("record", path)).chain(link))?;
     let scenario = scenarios::read(path)?;
     let session = Session::new(&scenario).map_err(|problems| Failure::Scenario(path.clone(), problems))?;
     let mut create = |path: &Path| outputs.create(path).map(|out| (path.to_owned(), out));
@@ -120,7 +122,7 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     if setbacks.count > 0 {
         let ms = server.clock.nanos(setbacks.cycles) as f64 / 1e6;
         return Err(Failure::Check(format!(
-            "not in real time: the clock was set back {} time{}, by {ms:.0} ms in total, but the run is exact for its input; use a longer --lag or a lower --pace",
+            "not in real time: the clock was set back {} time{}, by {ms:.0} ms in total (the recording is still reproducible); use a longer --lag or a lower --pace",
             setbacks.count,
             plural(setbacks.count)
         )));

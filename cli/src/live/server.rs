@@ -131,7 +131,7 @@ impl Server {
         }
         if interrupt::count() == 0 && self.session.jogs_without_end() {
             self.line.note(
-                "a jog button is still pressed, so the session ends here; add `release` lines to end the jog",
+                "a jog button is still pressed at the end of the input; add `release` lines to end the jog",
             );
         }
         Ok(())

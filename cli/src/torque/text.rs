@@ -30,12 +30,11 @@ pub(crate) fn report(axis_demand: &AxisDemand, out: &mut impl Write) -> io::Resu
         )?,
         corner => writeln!(out, "  full torque      {standing:.1} mN*m, up to {}", rate(corner))?,
     }
-    writeln!(
-        out,
-        "  maximum rate     {} with a load of {:.1} mN*m",
-        rate(machine.torque_rate()),
-        machine.load_mn_m()
-    )?;
+    let load_mn_m = machine.load_mn_m();
+    match machine.torque_rate() {
+        None => writeln!(out, "  maximum rate     not limited by torque (load {load_mn_m:.1} mN*m)")?,
+        limit => writeln!(out, "  maximum rate     {} with a load of {load_mn_m:.1} mN*m", rate(limit))?,
+    }
     if let Some(stated) = machine.working_rate() {
         writeln!(out, "  working rate     {stated:.0} steps/s, as specified")?;
     }

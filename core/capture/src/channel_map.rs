@@ -182,7 +182,7 @@ impl fmt::Display for MapError {
                 format!("{signal} requires {partner}; add {partner}=CHANNEL, or use STEP instead of {signal}")
             }
             Self::Conflict(signal, rival) => {
-                format!("{signal} and {rival} exclude each other for one motor; remove one of them")
+                format!("{signal} and {rival} cannot be used together; remove one of them")
             }
         };
         f.write_str(&text)
@@ -417,9 +417,9 @@ mod tests {
             ("DIR0=A,STEP1=A", "channel top.A is already DIR0"),
             ("CW0=A", "CW0 requires CCW0; add CCW0=CHANNEL"),
             ("B3=A", "B3 requires A3; add A3=CHANNEL"),
-            ("STEP0=A,DEDGE0=B", "STEP0 and DEDGE0 exclude each other for one motor; remove one of them"),
-            ("CW0=A,CCW0=B,DIR0=#3", "CW0 and DIR0 exclude each other for one motor"),
-            ("A1=A,B1=B,STEP1=#3", "STEP1 and A1 exclude each other for one motor"),
+            ("STEP0=A,DEDGE0=B", "STEP0 and DEDGE0 cannot be used together; remove one of them"),
+            ("CW0=A,CCW0=B,DIR0=#3", "CW0 and DIR0 cannot be used together"),
+            ("A1=A,B1=B,STEP1=#3", "STEP1 and A1 cannot be used together"),
         ] {
             let error = ChannelMap::parse(text, &capture).expect_err("no map").to_string();
             assert!(error.starts_with(expected), "{error}");

@@ -490,7 +490,7 @@ fn logs_with_a_time_per_line_are_read() {
             "2026-11-26 12:00:00,123456 RX: 55 AA\n2026-11-26 12:00:00,123457 TX: 01\n",
             &format!(
                 "SerialLog 1/1000000 [RX TX] 0:0:55 0:0:aa 1:1:01 end 1{}\n\
-                 - RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
+                 - RX and TX are named as in the log; if the host wrote the log, map RX=TX,TX=RX: the host's TX is the controller's RX",
                 first("2026-11-26 12:00:00,123456 RX: 55 AA")
             ),
         ),
@@ -520,7 +520,7 @@ fn logs_with_a_time_per_line_are_read() {
         (
             "[ 12.345678] >> 55\n[ 12.345679] << AA\n",
             "SerialLog 1/1000000 [TX RX] 12345678:0:55 12345679:1:aa end 12345679\n\
-             - RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
+             - RX and TX are named as in the log; if the host wrote the log, map RX=TX,TX=RX: the host's TX is the controller's RX",
         ),
         (
             "26.11.2026 12:00:00.123 [TX] - 55 AA\n",
@@ -545,13 +545,13 @@ fn logs_with_a_time_per_line_are_read() {
         (
             "0.001: RX 55\n12.5ms TX AA\n",
             "HexBytes 1/10000 [RX TX] 10:0:55 125:1:aa end 125\n\
-             - RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
+             - RX and TX are named as in the log; if the host wrote the log, map RX=TX,TX=RX: the host's TX is the controller's RX",
         ),
         // Tables.
         (
             "t_us,dir,data\n0,RX,55 AA\n10,TX,01\n",
             "HexBytes 1/1000000 [RX TX] 0:0:55 0:0:aa 10:1:01 end 10\n\
-             - RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
+             - RX and TX are named as in the log; if the host wrote the log, map RX=TX,TX=RX: the host's TX is the controller's RX",
         ),
         ("0,55\n1041,AA\n2083,01\n", "HexBytes [bytes] 0:0:55 1041:0:aa 2083:0:01 end 2083"),
         (
@@ -592,7 +592,8 @@ fn logs_with_a_time_per_line_are_read() {
 fn annotations_of_sigrok_are_read() {
     let unnamed = "- no annotation names RX or TX: all bytes are assigned to one line";
     let late = "- bytes without an annotated start bit are timed by their first data bit, one bit late";
-    let both = "- RX and TX are named as in the decoder; RX is read as the line to the controller: exchange RX and TX if it is TX";
+    let both =
+        "- RX and TX are named as in the decoder; if its TX is the line to the controller, map RX=TX,TX=RX";
     check(&[
         ("uart-1: 55\nuart-1: AA\n", &format!("Annotations [uart-1] 0:0:55 1:0:aa end 1\n{unnamed}")),
         (
@@ -757,7 +758,10 @@ fn an_unknown_file_is_refused_with_a_fix() {
         (&b""[..], "the file is empty; record or export again"),
         (b" \r\n\n", "the file is empty; record or export again"),
         (b"\xef\xbb\xbf\n", "the file is empty; record or export again"),
-        (b"Dear all,\nhere are the numbers", "unknown format, beginning with “Dear all,”; the nearest are "),
+        (
+            b"Dear all,\nhere are the numbers",
+            "unknown format, beginning with “Dear all,”; the closest formats are ",
+        ),
         (b"\x7fELF\x02\x01\0\0", unknown),
         (b"\xff\xfet\0i\0m\0e\0", "the text is UTF-16; save it as UTF-8"),
         (b"\x1f\x8b\x08\0", "the file is compressed (gzip); use gunzip"),
@@ -782,15 +786,15 @@ fn an_unknown_format_names_the_three_nearest_ones_and_their_needs() {
     for (text, expected) in [
         (
             "STEP,DIR,speed\n0,1,5\n1,1,5\n",
-            "unknown format, beginning with “STEP,DIR,speed”; the nearest are a table of levels (needs a time column, such as time_us or sample); a table of positions (needs column names such as time_us,position); ",
+            "unknown format, beginning with “STEP,DIR,speed”; the closest formats are a table of levels (needs a time column, such as time_us or sample); a table of positions (needs column names such as time_us,position); ",
         ),
         (
             "0,55\n1041,10\n2083,12\n",
-            "unknown format, beginning with “0,55”; the nearest are a table of positions (needs column names such as time_us,position); a table of bytes (needs column names such as t_us,bytes); ",
+            "unknown format, beginning with “0,55”; the closest formats are a table of positions (needs column names such as time_us,position); a table of bytes (needs column names such as t_us,bytes); ",
         ),
         (
             "55 AA hello\n55 AA\n",
-            "unknown format, beginning with “55 AA hello”; the nearest are bytes in hexadecimal (“hello” is not a byte); ",
+            "unknown format, beginning with “55 AA hello”; the closest formats are bytes in hexadecimal (“hello” is not a byte); ",
         ),
     ] {
         let error = read_bytes(text).error.expect("it is refused").message;

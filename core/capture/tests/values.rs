@@ -36,7 +36,7 @@ fn annotations_of_any_base_are_read_and_unclear_ones_are_not_guessed() {
         (
             "4C 7 65",
             format!(
-                "0:0:4c end 0\n{late}\n! line 3: byte 1, from 0, is not hexadecimal; print all bytes with format=hex"
+                "0:0:4c end 0\n{late}\n! line 3: byte 1 (the first is 0) is not hexadecimal; print all bytes with format=hex"
             ),
         ),
         // sigrok's format=ascii prints control characters so.
@@ -62,7 +62,7 @@ fn byte_counts_arrows_and_minutes_of_logs_are_not_bytes() {
     let first = |time: &str| {
         format!("\n- the first time is “{time}” and is read as 0; all other times are relative to it")
     };
-    let both = "- RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log";
+    let both = "- RX and TX are named as in the log; if the host wrote the log, map RX=TX,TX=RX: the host's TX is the controller's RX";
     let minutes = "- times have no seconds, so all bytes of a minute have the same time";
     check(&[
         // A direction at the end.

@@ -153,10 +153,13 @@ impl Scenario {
         }
         if self.source.runs_alone() {
             let detail = match self.source {
-                Source::Standalone(_) => "stand-alone controllers have no line; move them to the source",
+                Source::Standalone(_) => {
+                    "stand-alone controllers share no line; add each one to `source.standalone` instead"
+                }
                 _ => "segments run only one controller; remove the others, or choose ticks",
             };
             validator.add("controllers", ValueError::Conflict { detail });
+            return Vec::new();
         }
         // A line script may use one address for several controllers.
         let is_script = matches!(self.source, Source::Line(_));
@@ -220,11 +223,11 @@ impl Scenario {
         let channels = Channels { count: controller.bus.channels, path: &path };
         here.at("axes", |axes| channels.check_count(controller.axes.len(), 0, "axes", axes));
         if !controller.axes.is_empty() && !matches!(self.source, Source::Motion(_)) {
-            let detail = "axes need a motion as the source; remove them, or choose a motion";
+            let detail = "`axes` is used only with the source `motion`; remove it, or change the source";
             here.add("axes", ValueError::Conflict { detail });
         }
         if !controller.packets.is_empty() && !matches!(self.source, Source::Packets(_)) {
-            let detail = "packets need packets as the source; remove them, or choose packets";
+            let detail = "`packets` is used only with the source `packets`; remove it, or change the source";
             here.add("packets", ValueError::Conflict { detail });
         }
         let is_addressed = self.line.protocol == Protocol::Raw;

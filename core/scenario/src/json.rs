@@ -49,6 +49,16 @@ impl<'t> Json<'t> {
         text?.ok().map(|Text(text)| text)
     }
 
+    /// Also if it is too large for an `f64`.
+    pub(crate) fn is_number(self) -> bool {
+        self.raw().starts_with(|first: char| first == '-' || first.is_ascii_digit())
+    }
+
+    /// Also if it is too large for a `u64`.
+    pub(crate) fn is_whole_number(self) -> bool {
+        self.whole().is_some() || self.number().is_some_and(|number| number.abs() > MAX_EXACT)
+    }
+
     /// `None` for infinity.
     pub(crate) fn number(self) -> Option<f64> {
         serde_json::from_str(self.raw()).ok()

@@ -206,11 +206,11 @@ mod tests {
         let rows = [
             (
                 r#"{"source":{"segments":{"channels":[{"segments":[5]}]}}}"#,
-                "source.segments.channels[0].segments[0]: 5; use an object with one key (steps, dwell), such as {\"steps\": {\u{2026}}}",
+                "source.segments.channels[0].segments[0]: 5 is not valid; use an object with one key (steps, dwell), such as {\"steps\": {\u{2026}}}",
             ),
             (
                 r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":5}}]}]}}}"#,
-                "source.motion.axes[0].moves[0].constant.distance: 5; use an object with one key (steps, mm, deg), such as {\"steps\": 250}",
+                "source.motion.axes[0].moves[0].constant.distance: 5 is not valid; use an object with one key (steps, mm, deg), such as {\"steps\": 250}",
             ),
             (
                 r#"{"source":{"packet":{}}}"#,

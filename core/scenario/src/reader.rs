@@ -46,7 +46,7 @@ impl Reader {
 
     /// Reports a wrong type; always returns false.
     pub(super) fn reject_type(&mut self, value: Json<'_>, expected: &str) -> bool {
-        self.note(format!("{}; use {expected}", describe(value)));
+        self.note(format!("{} is not valid; use {expected}", describe(value)));
         false
     }
 
@@ -56,24 +56,26 @@ impl Reader {
         false
     }
 
-    /// Reports the field's own range, if it has one.
+    /// Reports the field's own range, if it has one. `kind` is what the value should be, or `None` if it is only out of
+    /// range.
     fn reject_number(
         &mut self,
         value: Json<'_>,
-        kind: &str,
+        kind: Option<&str>,
         range: Option<(&dyn Display, &dyn Display)>,
     ) -> bool {
         let row = self.row.filter(|row| !row.unit.is_empty());
         let unit = row.map_or_else(String::new, |row| format!(" {}", row.unit));
-        let of_type = || range.map_or_else(String::new, |(min, max)| format!(" from {min} to {max}"));
+        let of_type = || range.map_or_else(|| "a number".to_owned(), |(min, max)| format!("{min} to {max}"));
         let range = match self.row.map(|row| row.limit) {
-            Some(Limit::Whole(min, max)) => format!(" from {min} to {max}{unit}"),
-            Some(Limit::Signed(min, max)) => format!(" from {min} to {max}{unit}"),
-            Some(Limit::Number(min, max)) => format!(" from {min} to {max}{unit}"),
-            Some(Limit::Text(words)) => format!(": {words}"),
+            Some(Limit::Whole(min, max)) => format!("{min} to {max}{unit}"),
+            Some(Limit::Signed(min, max)) => format!("{min} to {max}{unit}"),
+            Some(Limit::Number(min, max)) => format!("{min} to {max}{unit}"),
+            Some(Limit::Text(words)) => words.to_owned(),
             _ => of_type(),
         };
-        self.reject_type(value, &format!("{kind}{range}"))
+        let problem = kind.map_or_else(|| "out of range".to_owned(), |kind| format!("not {kind}"));
+        self.reject(format!("{} is {problem}; use {range}", describe(value)))
     }
 
     /// Reports the allowed length, if the field has one.
@@ -234,7 +236,7 @@ impl Reader {
                 rename.last_version + 1
             )),
             (None, None) => {
-                self.reject_type(value, &format!("one of {}", words.join(", ")));
+                self.note(format!("{} is unknown; use one of {}", describe(value), words.join(", ")));
             }
         }
         None
@@ -259,7 +261,7 @@ fn describe(value: Json<'_>) -> String {
         None => text.to_owned(),
     };
     if value.is_null() {
-        "nothing (null)".to_owned()
+        "null".to_owned()
     } else if value.is_list() {
         "a list".to_owned()
     } else if value.is_map() {
@@ -288,7 +290,10 @@ macro_rules! whole {
                         *self = number;
                         true
                     }
-                    None => reader.reject_number(value, "a whole number", Some((&Self::MIN, &Self::MAX))),
+                    None => {
+                        let kind = (!value.is_whole_number()).then_some("a whole number");
+                        reader.reject_number(value, kind, Some((&Self::MIN, &Self::MAX)))
+                    }
                 }
             }
 
@@ -307,7 +312,7 @@ impl Read for f64 {
                 *self = number;
                 true
             }
-            None => reader.reject_number(value, "a number", None),
+            None => reader.reject_number(value, (!value.is_number()).then_some("a number"), None),
         }
     }
 

@@ -211,7 +211,7 @@ impl Annotations {
         });
         let Some(wrong) = wrong else { return Ok(()) };
         self.recorder.capture.bytes.truncate(wrong);
-        Err(format!("byte {wrong}, from 0, is not {}; print all bytes with format=hex", base.name()))
+        Err(format!("byte {wrong} (the first is 0) is not {}; print all bytes with format=hex", base.name()))
     }
 
     /// Skips an annotation that is not a byte; uses start bits and frame errors.
@@ -297,7 +297,7 @@ impl Reader for Annotations {
         let named = |name: &str| self.recorder.capture.channels.iter().any(|channel| channel.name == name);
         if named("RX") && named("TX") {
             self.recorder.note(
-                "RX and TX are named as in the decoder; RX is read as the line to the controller: exchange RX and TX if it is TX",
+                "RX and TX are named as in the decoder; if its TX is the line to the controller, map RX=TX,TX=RX",
             );
         }
         if self.is_unnamed && !is_empty {

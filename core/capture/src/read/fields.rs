@@ -105,6 +105,12 @@ pub(super) fn fields(line: &[u8], separator: u8) -> impl Iterator<Item = &[u8]> 
 }
 
 pub(super) fn not_a_level(name: &str, field: &[u8]) -> String {
+    if matches!(field, b"right" | b"left") {
+        return format!(
+            "{name} is {}: a table of step times, not of levels; use it with stepscope tables --steps",
+            quoted(field)
+        );
+    }
     let analog = Decimal::parse(field).is_some_and(|value| value.places > 0 || value.mantissa.abs() > 1);
     format!(
         "{} is {}, not 0 or 1; {}",

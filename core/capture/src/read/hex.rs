@@ -177,7 +177,7 @@ impl Reader for HexText {
         let named = |name: &str| self.recorder.capture.channels.iter().any(|channel| channel.name == name);
         if named("RX") && named("TX") {
             self.recorder.note(
-                "RX and TX are named as in the log; in a log of the host, TX is the line to the controller: exchange RX and TX for such a log",
+                "RX and TX are named as in the log; if the host wrote the log, map RX=TX,TX=RX: the host's TX is the controller's RX",
             );
         }
         if self.table.is_some_and(|table| table.is_ambiguous) && self.recorder.base.is_none() {

@@ -28,7 +28,7 @@ pub(super) fn nearest(lines: &[&[u8]]) -> String {
     let mut formats: Vec<(usize, String)> = formats.into();
     formats.sort_by_key(|(share, _)| core::cmp::Reverse(*share));
     let named: Vec<String> = formats.into_iter().take(MAX_NAMED).map(|(_, format)| format).collect();
-    format!("the nearest are {}", named.join("; "))
+    format!("the closest formats are {}", named.join("; "))
 }
 
 /// Share of the lines for which `is` returns true, in percent.

@@ -198,7 +198,9 @@ impl Vcd {
     fn text(&mut self, length: usize, word: &[u8]) -> Result<(), String> {
         let length = length + word.len();
         if length > MAX_TEXT {
-            return Err(format!("a string of more than {MAX_TEXT} bytes; add the code of its variable"));
+            return Err(format!(
+                "a string value of more than {MAX_TEXT} bytes without a variable code; record or copy the dump again"
+            ));
         }
         let is_over = self.header.ends_string(word);
         self.expected = if is_over { Expected::Token } else { Expected::Text(length) };

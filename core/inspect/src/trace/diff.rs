@@ -241,7 +241,7 @@ fn parse_row(text: &str, bits: &[u32]) -> Result<Record, String> {
     }
     match fields.next() {
         None => Ok(Record { cycle: Instant(cycle), levels: Levels(levels) }),
-        Some(_) => Err("more fields than the header names".into()),
+        Some(_) => Err("more fields than the header has; use the same number".into()),
     }
 }
 

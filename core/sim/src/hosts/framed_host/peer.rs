@@ -94,7 +94,7 @@ pub enum GivenUp {
     OtherChannels { expected: u8, reported: u8 },
     /// The host was stopped, and the controller has acknowledged STOP.
     Interrupted,
-    /// The maximum length of a run is over.
+    /// The run reached its maximum length.
     OutOfTime,
 }
 
@@ -120,9 +120,9 @@ impl fmt::Display for GivenUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoReply => f.write_str("no reply"),
-            Self::Stopped => f.write_str("it is stopped"),
-            Self::Refused(reason) => write!(f, "it refused a frame: {}", reason.name()),
-            Self::TicksMissing => f.write_str("it did fewer ticks than it acknowledged"),
+            Self::Stopped => f.write_str("the controller is stopped; send ENABLE or reset it"),
+            Self::Refused(reason) => write!(f, "the controller refused a frame: {}", reason.name()),
+            Self::TicksMissing => f.write_str("the controller executed fewer ticks than it acknowledged"),
             Self::Displaced { channel, ticks, expected, reported } => {
                 let s = if *ticks == 1 { "" } else { "s" };
                 write!(f, "after {ticks} tick{s} channel {channel} is at {reported} instead of {expected}")
@@ -130,15 +130,20 @@ impl fmt::Display for GivenUp {
             Self::OtherTicks { done, commanded } => {
                 write!(
                     f,
-                    "it counts {done} ticks since the start, and {commanded} were commanded: it was reset, or another host drives it"
+                    "the controller executed {done} ticks, but {commanded} were sent: it was reset, or another host controls it"
                 )
             }
-            Self::Reset => f.write_str("it was reset during the job, or another host drives it"),
-            Self::OtherChannels { expected, reported } => {
-                write!(f, "it reports positions of {reported} channels, and its ticks are for {expected}")
+            Self::Reset => {
+                f.write_str("the controller was reset during the job, or another host controls it")
             }
-            Self::Interrupted => f.write_str("its host was stopped"),
-            Self::OutOfTime => f.write_str("the maximum length of a run is over"),
+            Self::OtherChannels { expected, reported } => {
+                write!(
+                    f,
+                    "the controller reports positions of {reported} channels, but its ticks are for {expected}"
+                )
+            }
+            Self::Interrupted => f.write_str("the host was stopped"),
+            Self::OutOfTime => f.write_str("the run reached its maximum length"),
         }
     }
 }
@@ -147,7 +152,9 @@ impl fmt::Display for Progress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::GivenUp(why) => write!(f, "given up: {why}"),
-            Self::Counted => f.write_str("done by its count of ticks; it does not report its positions"),
+            Self::Counted => {
+                f.write_str("all ticks are counted, but the controller does not report positions")
+            }
             progress => f.write_str(progress.name()),
         }
     }

@@ -438,7 +438,10 @@ fn after_a_reset_the_report_has_the_ticks_that_were_reported_before() {
         Some(Ok(kind))
     });
     assert_eq!((progress, known.ticks_done()), (Progress::GivenUp(GivenUp::Reset), Some(0)));
-    assert_eq!(GivenUp::Reset.to_string(), "it was reset during the job, or another host drives it");
+    assert_eq!(
+        GivenUp::Reset.to_string(),
+        "the controller was reset during the job, or another host controls it"
+    );
 }
 
 #[test]
