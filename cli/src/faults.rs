@@ -222,9 +222,9 @@ const ROWS: &[Row] = &[
     ("  duplicated or not commanded", true, |tally| tally.duplicated),
     ("wrong steps", true, |tally| tally.wrong_steps),
     ("steps of missing ticks", true, |tally| tally.missing_steps),
-    ("distance of end positions", true, |tally| tally.position_error),
+    ("error of final positions, steps", true, |tally| tally.position_error),
     ("given up: no reply", false, |tally| tally.given_up),
-    ("  with rates within 4 %", false, |tally| tally.given_up_in_reach),
+    ("  although bit rates differ by up to 4 %", false, |tally| tally.given_up_in_reach),
     ("given up: other reasons", false, |tally| tally.stuck),
 ];
 
@@ -243,11 +243,11 @@ fn tables(reports: &[(&str, Report)]) -> Tables {
 
 fn print(reports: &[(&str, Report)]) -> io::Result<()> {
     let mut out = terminal::out();
-    write!(out, "{:30}", "")?;
+    write!(out, "{:42}", "")?;
     reports.iter().try_for_each(|(name, _)| write!(out, "{name:>14}"))?;
     writeln!(out)?;
     for (name, everywhere, value) in ROWS {
-        write!(out, "{name:30}")?;
+        write!(out, "{name:42}")?;
         for (protocol, report) in reports {
             let shown = *everywhere || *protocol == FRAMED;
             let value = if shown { value(&report.tally).to_string() } else { "-".to_owned() };

@@ -58,7 +58,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Run a scenario and write its digest, status, trace and other files
+    /// Run a scenario; print its digest and status, and write traces and tables
     Run(run::Arguments),
     /// Serve a scenario's controllers in real time
     ///
@@ -120,7 +120,7 @@ enum Command {
     Drivers(options::Json),
     /// Write a completion script for a shell
     Completions {
-        /// Shell to complete commands, options and presets in
+        /// Shell to generate the script for
         shell: clap_complete::Shell,
         #[command(flatten)]
         out: options::Out,

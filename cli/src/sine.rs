@@ -24,9 +24,9 @@ pub(crate) enum Command {
         #[arg(long, value_name = "N", default_value = "500", value_parser = whole::<u32>(2..=1_000_000))]
         points: u32,
     },
-    /// Find the maximum deviation d1 with the minimum distortion
+    /// Find the deviation limit d1 that gives the least distortion
     ///
-    /// Compares all different polylines of the range.
+    /// Compares every distinct polyline in the range.
     Best {
         #[command(flatten)]
         range: Range,
@@ -67,7 +67,7 @@ pub(crate) struct Range {
     /// End of the range of d1
     #[arg(long, value_name = "D1", default_value = "0.06")]
     to: AmplitudePart,
-    /// Bandwidth of an accelerometer, in Hz; adds the distortion that it measures
+    /// Bandwidth of an accelerometer, in Hz; adds the distortion after its low-pass filter
     ///
     /// A first-order low-pass filter (-3 dB).
     #[arg(long, value_name = "HZ", requires = "period_s")]
@@ -98,7 +98,7 @@ impl Range {
 
 #[derive(Args)]
 pub(crate) struct Common {
-    /// Highest harmonic of the distortion
+    /// Highest harmonic included in the distortion
     #[arg(long, value_name = "K", default_value = "399", value_parser = whole::<u16>(3..=9999))]
     order: u16,
     #[command(flatten)]

@@ -45,8 +45,8 @@ pub(crate) struct Arguments {
     error_us: Microseconds,
     /// Maximum error of a step in a compressed table, as 1/N of a step interval (Klipper: 2)
     ///
-    /// Applies in addition to --error-us. The interval is the shorter one next to the step; with --window early, the one
-    /// before the step.
+    /// Applies in addition to --error-us. The interval is the shorter of the two next to the step; with --window early,
+    /// the one before it.
     #[arg(long, value_name = "N", value_parser = whole::<NonZeroU32>(1..=u32::MAX.into()))]
     interval_part: Option<NonZeroU32>,
     /// Allowed direction of the error in a compressed table
@@ -54,8 +54,8 @@ pub(crate) struct Arguments {
     window: WindowName,
     /// Search method of a compressed table
     ///
-    /// For tables with fractions of cycles, fewest requires a maximum error so small that a window has at most 4096
-    /// units. Otherwise both methods are the same.
+    /// With q8 and q16, fewest differs from quick only if the maximum error is below 2048 units of the format (q8:
+    /// 8 cycles, q16: 1/32 cycle).
     #[arg(long, value_enum, default_value = "fewest")]
     search: Search,
     /// Format of an entry: q16, q8, ticks or klipper (default: q16; for a summary, all)
@@ -103,7 +103,7 @@ impl WindowName {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Search {
-    /// Minimum number of entries; column surplus of the summary is the maximum excess
+    /// Fewest entries; if this cannot be proven, column surplus of the summary is an upper bound on the excess
     Fewest,
     /// Hundreds of times faster: each entry is the longest one that ends near the middle of a window
     Quick,

@@ -24,7 +24,7 @@ fn only_raw_lines_have_wrong_steps_with_any_number_of_threads() {
     assert_eq!((code, err.as_str()), (Some(0), ""));
     assert_eq!(row(&table, "seeds"), [300, 300]);
     for name in
-        ["missing", "wrong", "duplicated or not commanded", "wrong steps", "distance of end positions"]
+        ["missing", "wrong", "duplicated or not commanded", "wrong steps", "error of final positions, steps"]
     {
         let numbers = row(&table, name);
         assert!(numbers[0] == 0 && numbers[1] > 0, "{name}: {numbers:?}");

@@ -102,12 +102,12 @@ fn write_result(result: io::Result<usize>) -> io::Result<usize> {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Rs485 {
-    /// By the adapter itself
+    /// The adapter switches it
     #[default]
     Auto,
-    /// By the kernel (TIOCSRS485)
+    /// The kernel switches it (TIOCSRS485)
     Kernel,
-    /// By this command with RTS, up to 9600 baud
+    /// This command switches it with RTS, up to 9600 baud
     Rts,
 }
 

@@ -36,10 +36,10 @@ pub(crate) struct Arguments {
     slack: u64,
     /// Number of raw packets to send ahead, fewer than the queue holds
     ///
-    /// Delays of up to this number of packets cause no gap.
+    /// A delay shorter than this number of ticks then causes no underrun.
     #[arg(long, value_name = "PACKETS", default_value_t = 0, value_parser = whole::<u8>(0..=254))]
     lead: u8,
-    /// Control of an RS-485 transceiver's direction
+    /// How the direction of an RS-485 transceiver is switched
     #[arg(long, value_enum, default_value_t)]
     rs485: Rs485,
     /// Expect and check an echo of the sent bytes

@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     port: Option<PathBuf>,
     /// Maximum delay of the model, in ms, before its clock is set back
     ///
-    /// Then the session ends with exit code 3.
+    /// If the clock is set back, the session continues, and its exit code is 3.
     #[arg(long, value_name = "MS", default_value_t = 50, value_parser = whole::<u64>(1..=60_000))]
     lag: u64,
     /// Speed relative to real time, 0.001 to 100, or `max`

@@ -36,7 +36,7 @@ fields! {
             .whole(limits::DIR_SETUP_CYCLES)
             .term("DIR set-up", "DIR must be stable for this time before STEP rises. Otherwise the driver may step in the old direction.")
             .from(SHEETS),
-        /// H: from the fall of STEP to the change of DIR.
+        /// H: from the fall of STEP to the change of DIR. Data sheets count from the rise: pulse width + this time.
         dir_hold_cycles: u32 => label("DIR hold after STEP falls")
             .unit("cycles")
             .whole(limits::DIR_HOLD_CYCLES)

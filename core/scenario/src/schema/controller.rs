@@ -12,7 +12,7 @@ settings! {
     /// Only with a line script may several controllers have the same address.
     ///
     /// On a raw line the packets of tick j are sent without pauses, in ascending address, from boot + 1 + j*M*Ts (boot is
-    /// the longest self-test). So all controllers need the same tick length and the same number of channels. On a framed
+    /// the longest self-test), so all controllers need the same tick length and the same number of channels. On a framed
     /// line each controller starts with its first frame.
     pub struct Controller {
         /// Address, different for each controller.

@@ -24,11 +24,11 @@ settings! {
         pub title: String = String::new() => label("Name")
             .length(0..=120, "characters")
             .term("Name", "Name of the experiment. It is part of the link."),
-        /// What to see, and where it comes from.
+        /// What to look at, and the source of the values.
         pub note: String = String::new() => label("Note")
             .length(0..=2000, "characters")
             .term("Note", "What the person who opens the link should see and try."),
-        /// Clock of the peripheral. All cycles count it.
+        /// Clock of the peripheral. All `_cycles` fields count periods of this clock.
         pub clock_hz: u32 = 16_000_000 => label("Clock")
             .unit("Hz")
             .whole(limits::CLOCK_HZ)
@@ -54,7 +54,7 @@ settings! {
         /// Driver whose timing the pulses are checked against. It does not affect the run.
         pub driver_timing: Option<DriverTiming> = None => label("Driver timing").null_means("not checked"),
         /// Motors with their drivers, supply and sensors, driven by the pulses.
-        pub plant: Option<PlantSettings> = None => label("Motors and supply").only_if_set().null_means("no motors: only the bus is simulated"),
+        pub plant: Option<PlantSettings> = None => label("Motors and supply").only_if_set().null_means("no motors, only the bus is simulated"),
     }
 }
 
@@ -65,12 +65,12 @@ settings! {
         pub axis: u8 = 0 => label("Axis")
             .range_text("0 to the number of axes - 1 (of channels if there are no axes)")
             .term("Axis", "Axis of the spectrum. Axis 0 drives channel 0."),
-        /// Highest harmonic of the distortion.
+        /// Highest harmonic included in the distortion.
         pub max_harmonic: u16 = 40 => label("Max harmonic")
             .whole(2..=1000)
             .term("Max harmonic", "Highest harmonic that the distortion (THD) includes.")
             .from(SINE),
-        /// Samples per period of the ideal curve. Any number is coherent; powers of two are fastest.
+        /// Samples per period of the ideal curve. Every length gives a coherent spectrum; powers of two are fastest.
         pub fft_length: u32 = 4096 => label("Samples per period")
             .whole(16..=65_536)
             .term("Samples", "Samples per period for the Fourier transform. They span exactly one period, so there is no leakage.")

@@ -125,8 +125,8 @@ settings! {
             .whole(PPM)
             .term("Replies lost", "The controller executes the frame, but the host does not receive the reply. Sequence numbers handle this case.")
             .from(OWN),
-        /// Crashes of the host during a frame (on a raw line: a packet), of all frames. After the restart it only has its
-        /// commands.
+        /// Crashes of the host during a frame (on a raw line: a packet), of all frames. After the restart the host
+        /// has lost its state, and starts again from its list of commands.
         pub host_crashes_ppm: u32 = 0 => label("Host restarts")
             .unit("ppm")
             .whole(PPM)

@@ -118,7 +118,7 @@ fn default_of(ty: &Type, default: &dyn ToParts) -> String {
             format!("{} {unit}", value_text(value))
         }
         (Type::Group(_), Parts::Kind(name, _)) => format!("`{name}`"),
-        (Type::Group(_), _) => "its own".into(),
+        (Type::Group(_), _) => "see below".into(),
         (Type::List(Type::Point), _) => format!("`{}`", value_text(default)),
         (Type::List(_), Parts::List(entries)) if entries.is_empty() => "none".into(),
         (Type::List(_), Parts::List(entries)) => {

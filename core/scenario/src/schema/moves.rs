@@ -117,7 +117,7 @@ const PERIODS: Field = label("Periods")
 fields! {
     /// Constant acceleration: with the table of whole rates and timer reloads of Sonobe 2011, or exact.
     Trapezoid {
-        /// Negative moves left.
+        /// Negative values move left.
         distance: Distance => DISTANCE,
         /// Rate of the first step.
         start_speed: Speed => START_SPEED,
@@ -139,10 +139,9 @@ fields! {
     }
     /// A fixed length with a table of whole rates, each held for some steps.
     Staircase {
-        /// L in Zhang 2012. Negative moves left.
+        /// L in Zhang 2012. Negative values move left.
         distance: Distance => DISTANCE,
-        /// Rate of the plateau, f_s. At or below the start speed it is the rate of the whole move. (`max_speed` is the end
-        /// of the table.)
+        /// Rate of the plateau, f_s. At or below the start speed it is the rate of the whole move.
         top_speed: Speed => TOP_SPEED,
         /// Level times 1000 steps/s².
         level: u8 => label("Acceleration level").named("acceleration_level")
@@ -155,7 +154,7 @@ fields! {
             .from(ZHANG),
         /// First rate of the table, f_1.
         start_speed: Speed => START_SPEED,
-        /// The table ends with the first rate above this value, f_max. The top speed must not exceed it.
+        /// The table ends with the first rate above this value, f_max. It limits `top_speed`.
         max_speed: Speed => label("Table ends above")
             .unit("steps/s")
             .number(limits::TABLE_RATE_STEPS_S)
@@ -164,11 +163,11 @@ fields! {
     }
     /// A given number of steps in a given time.
     Cosine {
-        /// Negative moves left. Rounded to whole steps, which are reached exactly.
+        /// Negative values move left. Rounded to whole steps, which are reached exactly.
         distance: Distance => DISTANCE,
-        /// Time of the whole move; exact, except for slices with a plateau.
+        /// Duration of the whole move; exact, except for slices with a plateau.
         duration_s: f64 => DURATION,
-        /// Time of each ramp.
+        /// Duration of each ramp.
         ramp_s: f64 => RAMP,
         /// How step times are computed.
         method: CosineMethod => label("Step times")
@@ -184,11 +183,11 @@ fields! {
     }
     /// A given number of steps in a given time. Deceleration mirrors acceleration.
     Ramps {
-        /// Negative moves left. Rounded to whole steps, which are reached exactly.
+        /// Negative values move left. Rounded to whole steps, which are reached exactly.
         distance: Distance => DISTANCE,
-        /// Time of the whole move; exact.
+        /// Duration of the whole move; exact.
         duration_s: f64 => DURATION,
-        /// Time of each ramp.
+        /// Duration of each ramp.
         ramp_s: f64 => RAMP,
         /// Shape of the ramps. Deceleration mirrors acceleration.
         shape: RampShape => label("Shape")
@@ -221,9 +220,9 @@ fields! {
             .term("Deviation d1", "Maximum distance of a segment from the sine, relative to the amplitude. A smaller d1 makes more segments, but not always less distortion.")
             .from(SINE),
     }
-    /// Each step where the cosine crosses its half-integer: 4 x amplitude steps per period.
+    /// Step k is due where the cosine crosses k - 1/2. One period has 4 × amplitude steps.
     Sine {
-        /// From the center to an extreme. Negative starts at the left one.
+        /// From the center to an extreme. A negative value starts at the left extreme.
         amplitude: Distance => AMPLITUDE,
         /// Time of one period.
         period_s: f64 => PERIOD,
@@ -233,7 +232,7 @@ fields! {
     /// From rest to rest, as fast as the three limits allow. A short move omits its plateau, its constant
     /// acceleration, or both.
     JerkLimited {
-        /// Negative moves left.
+        /// Negative values move left.
         distance: Distance => DISTANCE,
         /// Short moves do not reach it.
         max_speed: Speed => label("Max speed")
@@ -253,7 +252,7 @@ fields! {
     }
     /// Both columns are relative to the first point. Times rise by at least 1 ns; positions are within 10^9 steps.
     /// `"straight"` is the polyline itself, whose speed jumps at each point. `"smooth"` uses cubics (Steffen 1990) from
-    /// rest to rest, which turn only where the points turn. Each step comes where the curve crosses a half-integer. The
+    /// rest to rest, which turn only where the points turn. Step k is due where the curve crosses k - 1/2. The
     /// axis ends at the last position, rounded half up to a whole step.
     ///
     /// `stepscope points table.csv` makes a scenario from a table with two columns; the page's form reads one too. A long
@@ -272,7 +271,7 @@ fields! {
     }
     /// One rate for the whole move.
     Constant {
-        /// Negative moves left.
+        /// Negative values move left.
         distance: Distance => DISTANCE,
         /// Rate of every step.
         speed: Speed => SPEED,
@@ -288,7 +287,7 @@ words! {
     TrapezoidMethod {
         /// whole pulse rates, one per step, and whole timer reloads (Sonobe 2011)
         Table = "table", "table and timer";
-        /// each step where the ideal curve crosses its half-integer
+        /// step k where the ideal curve crosses k - 1/2
         Exact = "exact", "exact";
     }
     ShortMove {
@@ -298,7 +297,7 @@ words! {
         Reverse = "reverse", "accelerate and decelerate";
     }
     CosineMethod {
-        /// each step where the ideal curve crosses its half-integer
+        /// step k where the ideal curve crosses k - 1/2
         Exact = "exact", "exact";
         /// whole steps per time slice, with the time error of Song 2021
         Sliced = "sliced", "in slices";

@@ -19,7 +19,7 @@ settings! {
         pub source_ohm: f64 = 0.1 => label("Source").unit("Ω").number(limits::SOURCE_OHM).from(OWN),
         /// Buffer capacitance at the drivers.
         pub buffer_uf: Option<f64> = None => label("Buffer")
-            .unit("µF").number(limits::BUFFER_UF).null_means("no buffer: the voltage is constant").from(OWN),
+            .unit("µF").number(limits::BUFFER_UF).null_means("no buffer, constant voltage").from(OWN),
         /// Whether the source accepts current from the drivers.
         pub source_sinks: bool = false => label("Source sinks current").from(OWN),
         /// Idle current of each driver.

@@ -15,7 +15,7 @@ settings! {
     /// cycles (`bus.pulse_width_cycles`, `bus.dir_hold_cycles`, `bus.dir_setup_cycles`). A list lasts less than 2^48
     /// cycles.
     ///
-    /// Of `bus` only `channels` and these three times are used, and nothing of `line`. EN, RX and TX are 1 and DE is 0.
+    /// Only `bus.channels` and these three times apply; `line` is ignored. EN, RX and TX are 1 and DE is 0.
     pub struct SegmentLists {
         /// One list per channel.
         pub channels: Vec<ChannelSegments> = Vec::new() => label("Lists")

@@ -101,6 +101,7 @@ settings! {
         /// Instead of bytes: address, kind and body in hex, such as `ff 05` (STOP for all). CRC, COBS and delimiters are
         /// added.
         pub frame: Option<Hex> = None => label("Frame")
+            .range_text("hex")
             .null_means("the bytes are sent")
             .term("Frame", "Address, kind and body with a CRC, between two zero bytes. COBS removes the zeros from the content, so that the end of a frame is always found.")
             .from(OWN)

@@ -21,9 +21,9 @@ const fn length(range: &RangeInclusive<i128>) -> RangeInclusive<usize> {
 }
 
 settings! {
-    /// Nothing is sent: controller i drives channel i with buttons, a program and switches. Of `bus` only `channels` and the
-    /// three pulse times are used, and nothing of `line`. The default controller waits for buttons. Lengths are the digits
-    /// of its display: with one decimal 305 is 30.5.
+    /// Nothing is sent: controller i drives channel i with buttons, a program and switches. Only `bus.channels` and the
+    /// three pulse times (`pulse_width_cycles`, `dir_setup_cycles`, `dir_hold_cycles`) apply; `line` is ignored. The
+    /// default controller waits for buttons. Lengths are the digits of its display: with one decimal 305 is 30.5.
     ///
     /// EN follows power, emergency stop and alarms. With several controllers, `power`, `estop` and `clear` of the first
     /// one apply to all.
@@ -275,9 +275,9 @@ settings! {
 settings! {
     /// Level of an input that ends a move.
     pub struct Until {
-        /// `home_switch` or `in_0` to `in_3`.
+        /// Input other than the limit switches.
         pub input: Sensor = Sensor::In0 => label("Input").range_text("not a limit switch").from(OWN),
-        /// The level.
+        /// Level that ends the move.
         pub level: u8 = 1 => ON,
     }
 }
@@ -322,7 +322,7 @@ settings! {
     pub struct WaitGroup {
         /// Input.
         pub input: Sensor = Sensor::In0 => label("Input").from(OWN),
-        /// The level.
+        /// Level to wait for.
         pub level: u8 = 1 => ON,
         /// Maximum wait; 0 waits forever.
         pub timeout_ms: u32 = 0 => label("Timeout").unit("ms").whole(whole(&limits::TIMEOUT_MS)).from(OWN),
@@ -336,13 +336,13 @@ settings! {
     pub struct SetGroup {
         /// Output.
         pub output: u8 = 0 => label("Output").whole(whole(&limits::OUTPUT)).from(OWN),
-        /// The level.
+        /// Level to set.
         pub level: u8 = 1 => ON,
     }
 }
 
 settings! {
-    /// Continues at an earlier group until that has run a number of times.
+    /// Returns to an earlier group until that group has run the given number of times.
     pub struct RepeatGroup {
         /// First group to repeat.
         pub first: u8 = 1 => label("First").range_text("1 to below this group's number").from(OWN),
@@ -357,8 +357,8 @@ settings! {
         /// Next group.
         pub to: u8 = 1 => label("To").range_text("1 to the number of groups").from(OWN),
         /// Only if this input has the level.
-        pub input: Option<Sensor> = None => label("Input").null_means("always"),
-        /// The level.
+        pub input: Option<Sensor> = None => label("Input").range_text("an input").null_means("always"),
+        /// Level at which the jump is made.
         pub level: u8 = 1 => ON,
     }
 }
@@ -394,11 +394,11 @@ settings! {
         pub switch: Switch = Switch::HomeSwitch => label("Switch").from(OWN),
         /// Direction of the search.
         pub direction: Direction = Direction::Negative => DIRECTION,
-        /// Rate towards the switch.
+        /// Rate toward the switch.
         pub coarse_hz: u32 = 1000 => label("Coarse rate").unit("Hz").range_text("10 to `start_speed_hz`").from(OWN),
         /// Rate of the final approach.
         pub fine_hz: u32 = 10 => label("Fine rate").unit("Hz").range_text("10 to `start_speed_hz`").from(OWN),
-        /// Steps beyond the opening of the switch.
+        /// Steps to continue after the switch opens.
         pub pull_off_steps: u32 = 20 => label("Pull-off").unit("steps").whole(whole(&limits::PULL_OFF_STEPS)).from(OWN),
         /// Maximum steps of each approach.
         pub max_travel_steps: u32 = 100_000 => label("Max travel").unit("steps").whole(whole(&limits::TRAVEL_STEPS)).from(OWN),
@@ -430,9 +430,9 @@ settings! {
         pub min_switch_at_steps: Option<i64> = None => axis_position("Left switch, up to").null_means("the left limit switch is an input"),
         /// `limit_max` is 1 from here to the right.
         pub max_switch_at_steps: Option<i64> = None => axis_position("Right switch, from").null_means("the right limit switch is an input"),
-        /// `home_switch` is 1 from here …
+        /// Left end of the range in which `home_switch` is 1.
         pub home_from_steps: Option<i64> = None => axis_position("Home switch, from").null_means("the home switch is an input"),
-        /// … to here. Use both or neither.
+        /// Right end of this range. Set both or neither.
         pub home_to_steps: Option<i64> = None => axis_position("Home switch, to").null_means("the home switch is an input"),
         /// Hard stop on the left, where steps are lost.
         pub hard_min_steps: Option<i64> = None => axis_position("Left hard stop").null_means("no hard stop"),
@@ -466,7 +466,7 @@ settings! {
         /// Cycle of the change.
         pub cycle: u64 = 1 => label("Cycle").unit("cycles").whole(whole(&limits::INPUT_CYCLE)),
         /// Input that changes.
-        pub input: Option<Signal> = None => label("Input").null_means("a push"),
+        pub input: Option<Signal> = None => label("Input").range_text("an input").null_means("a push"),
         /// New level.
         pub level: u8 = 1 => ON,
         /// Moves the axis by this number of steps while the windings have no current.
