@@ -1,6 +1,6 @@
 /**
  * The page: creates the state, the engine and the views. Each change flows from message to state, validation, run and
- * drawing. Folders only import from folders to their left, which a test checks:
+ * drawing. Folders and files only import from their left, which a test checks:
  *
  *     pkg -> pkg-tools -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
  */
@@ -38,7 +38,7 @@ import { createTheme } from "./shell/theme.js";
 import { errorMessage } from "./state/error_message.js";
 import { initial } from "./state/initial.js";
 import { blockedBy, isStale } from "./state/queries.js";
-import { EARLIER } from "./state/result.js";
+import { EARLIER_REVISION } from "./state/result.js";
 import { update } from "./state/update.js";
 import { load as loadCharts } from "./time/plot.js";
 import { createViews, exportsOf } from "./views/all_views.js";
@@ -84,38 +84,50 @@ const engine = new Engine({
 function dispatch(message) {
   const before = state;
   state = update(state, message);
-  if (state !== before) follow(before);
+  if (state !== before) applyChange(before);
 }
 
 /** Reacts to a change of the state. @param {State | undefined} before */
-function follow(before) {
-  const { scenario, validation, approved, drafts, result } = state;
-  if (before?.scenario !== scenario) {
+function applyChange(before) {
+  const changed = (/** @type {keyof State} */ key) => before?.[key] !== state[key];
+  if (changed("scenario")) {
     document.documentElement.dataset.state = "busy";
     runner.validate();
     // The initial scenario is not saved.
-    if (before && state.origin === "own") {
-      // An edited link or preset becomes the user's work.
-      if (before.origin !== "own") savePrevious(JSON.stringify(scenario));
-      saveScenario(JSON.stringify(scenario));
-    }
+    if (before) saveOwnScenario(before);
   }
-  if (before?.validation !== validation || before?.approved !== approved || before?.drafts !== drafts) runner.plan();
-  if (result && before?.result !== result) {
-    document.documentElement.dataset.state = "busy";
-    if (result.revision === state.revision && state.origin === "own") saveLastValid(JSON.stringify(scenario));
-    // Before the views send their requests.
-    engine.request("select", result.controller).catch(unlessDropped);
-  }
+  if (changed("validation") || changed("approved") || changed("drafts")) runner.plan();
+  const { result } = state;
+  const isNewResult = result !== null && changed("result");
+  // The views request their data of the selected controller, so it comes first.
+  if (isNewResult) selectResult(result);
   if (state.run.progress) revealPage();
   const drawn = views.map((view) => view.render(state, before));
   byId("views").classList.toggle("blank", result === null);
-  byId("views").classList.toggle(
-    "dim",
-    result !== null && isStale(state) && blockedBy(state) !== "unvalidated" && state.run.phase !== "running",
-  );
-  if (result && before?.result !== result) markReady(Promise.allSettled(drawn));
+  byId("views").classList.toggle("dim", result !== null && isOutdated());
+  if (isNewResult) markReady(Promise.allSettled(drawn));
   else if (state.run.phase === "failed") markReady(Promise.resolve());
+}
+
+/** @param {State} before */
+function saveOwnScenario(before) {
+  if (state.origin !== "own") return;
+  const json = JSON.stringify(state.scenario);
+  // An edited link or preset becomes the user's work.
+  if (before.origin !== "own") savePrevious(json);
+  saveScenario(json);
+}
+
+/** @param {NonNullable<State["result"]>} result */
+function selectResult(result) {
+  document.documentElement.dataset.state = "busy";
+  if (result.revision === state.revision && state.origin === "own") saveLastValid(JSON.stringify(state.scenario));
+  engine.request("select", result.controller).catch(unlessDropped);
+}
+
+/** Whether the visible result is not that of the scenario, and no run will replace it soon. */
+function isOutdated() {
+  return isStale(state) && blockedBy(state) !== "unvalidated" && state.run.phase !== "running";
 }
 
 /** Shows the form and the views. */
@@ -160,11 +172,10 @@ async function start() {
     loadCharts(),
   ]);
   setSchema(schema);
-  const defaults = samples();
   // The history of another version of the page is not used.
   const version = byId("version").textContent ?? "";
-  const { left, good } = await savedWork(engine, fallback, version);
-  state = left;
+  const { saved, lastValid } = await savedWork(engine, fallback, version);
+  state = saved;
   const page = { engine, dispatch, now: () => state };
   // Saving long histories is too slow for every keystroke.
   window.addEventListener("pagehide", () => saveHistory(version, state));
@@ -173,10 +184,10 @@ async function start() {
   const link = createLink(page);
   createImports({ openLink: link.openLink, problemText, ...page });
   const remedies = createRemedyRequests(engine);
-  const { all, loadKeys } = createViews(page, drivers, defaults);
+  const { all, loadKeys } = createViews(page, drivers, samples());
   views = [
     createHeader({ presets, problemText, cancel: runner.cancel, retry: runner.retry, ...page }),
-    createForm({ root: byId("fields"), samples: defaults, drivers, dispatch, remedies }),
+    createForm({ root: byId("fields"), samples: samples(), drivers, dispatch, remedies }),
     createTabs(page),
     createPanes(page),
     ...all,
@@ -197,10 +208,11 @@ async function start() {
   if (listedRecordings())
     await import("./shell/recording/saved_recordings.js").then(({ restore }) => restore(page)).catch(() => {});
   await link.start(loadScenario() !== null);
+  // The link did not replace the scenario.
   if (state.revision === 0) {
-    follow(undefined);
+    applyChange(undefined);
     // The last valid run is shown dimmed.
-    if (good !== null) engine.run(EARLIER, good);
+    if (lastValid !== null) engine.run(EARLIER_REVISION, lastValid);
   }
   await offerNewer(page);
 }

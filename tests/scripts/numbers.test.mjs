@@ -54,8 +54,8 @@ test("a field of cycles takes a time", () => {
 
 test("errors state the text and what is allowed", () => {
   const rows = [
-    ["", "s", /^A number is missing; use one, such as 0\.4 or 400 ms\.$/],
-    ["x", "Hz", /^“x” is not a number; use one/],
+    ["", "s", /^Enter a number, such as 0\.4 or 400 ms\.$/],
+    ["x", "Hz", /^“x” is not a number; enter one such as/],
     ["3 Mm", "mm", /^“Mm” is not a unit of this field; use mm\.$/],
     ["3 kg", "", /^“kg” is not a unit of this field; use a number without a unit\.$/],
     ["3 V", "cycles", /^“V” is not a unit of this field; use cycles or a time, such as 2\.5 us\.$/],
@@ -65,6 +65,26 @@ test("errors state the text and what is allowed", () => {
   for (const [text, unit, expected] of rows) assert.match(parseNumber(text, unit).message, expected, text);
   const whole = parseNumber("0.4", "", { integer: true, least: 1, most: 9 });
   assert.match(whole.message, /^0\.4 is not a whole number; use 0 or 1\.$/);
+});
+
+test("a time in a field of cycles is checked like cycles", () => {
+  const options = { integer: true, clockHz: 16e6 };
+  assert.match(parseNumber("1e305 s", "cycles", options).message, /too large/);
+});
+
+test("several comma groups are thousands", () => {
+  assert.deepEqual(parseNumber("1,234,567", "Hz"), { value: 1_234_567 });
+  assert.deepEqual(parseNumber("-1,234,567.5 mm", "mm"), { value: -1_234_567.5 });
+});
+
+test("only groups of three digits are joined", () => {
+  assert.deepEqual(parseNumber("12 000 Hz", "Hz"), { value: 12_000 });
+  assert.match(parseNumber("5 10", "Hz").message, /^“10” is not a unit of this field; use Hz\.$/);
+});
+
+test("both code points of ohm and micro are units", () => {
+  for (const ohm of ["\u03a9", "\u2126"]) assert.deepEqual(parseNumber(`5 ${ohm}`, "\u03a9"), { value: 5 });
+  for (const micro of ["\u00b5", "\u03bc"]) assert.deepEqual(parseNumber(`5 ${micro}s`, "\u00b5s"), { value: 5 });
 });
 
 test("a typed unit is selected", () => {

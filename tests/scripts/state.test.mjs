@@ -4,7 +4,7 @@ import { DEPTH } from "../../web/state/history.js";
 import { initial } from "../../web/state/initial.js";
 import { get, movedTo, set } from "../../web/state/paths.js";
 import { blockedBy, derivedAxis, isStale } from "../../web/state/queries.js";
-import { EARLIER } from "../../web/state/result.js";
+import { EARLIER_REVISION } from "../../web/state/result.js";
 import { clamp, endOf, MIN_SPAN, readingCycle, shown } from "../../web/state/time_window.js";
 import { update } from "../../web/state/update.js";
 
@@ -426,9 +426,9 @@ test("a message without effect gives the same state", () => {
 });
 
 test("an earlier visit's result is shown while there is none", () => {
-  const { result } = play([done(EARLIER)]);
-  assert.equal(result.revision, EARLIER);
-  assert.equal(play([done(0), done(EARLIER)]).result.revision, 0);
+  const { result } = play([done(EARLIER_REVISION)]);
+  assert.equal(result.revision, EARLIER_REVISION);
+  assert.equal(play([done(0), done(EARLIER_REVISION)]).result.revision, 0);
 });
 
 test("the moves of one gesture are one step back", () => {

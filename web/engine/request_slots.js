@@ -1,6 +1,6 @@
 /** Requests of which only the newest matters, such as those of a moving pointer. */
 
-/** Rejects requests that were replaced or whose worker is gone. */
+/** The error of a request that was replaced by a newer one, or whose worker ended. */
 export class Dropped extends Error {}
 
 /** @typedef {{method: string, args: any[], resolve: (value: any) => void, reject: (error: Error) => void}} Waiting */
@@ -16,7 +16,7 @@ export class RequestSlots {
   }
 
   /**
-   * Sends the newest waiting request of a slot after the current one; the others are rejected with `Dropped`.
+   * Sends the request when the slot is free. If a newer one arrives first, it is rejected with `Dropped`.
    * @param {string} slot @param {string} method @param {any[]} args
    * @returns {Promise<any>}
    */

@@ -21,14 +21,29 @@ const HEAD_BYTES = 16 << 10;
 const PIECE = 4 << 20;
 /** Maximum problems in a message. */
 const MAX_LISTED = 8;
+/** Part `c` of a link, which contains the scenario. */
 const LINK = /(?:^|[#&\s])c(?:=|%3D)\d+(?:\.|%2E)/i;
 
 const KINDS_OF_FILES =
   "Stepscope opens: a scenario (JSON), a share link as text, a table of packets (CSV) to send again, edges (CSV or trace) to compare with this run, and recordings: VCD, sigrok sessions, tables of levels (CSV), hex dumps, serial logs, UART annotations, Klipper step commands, and tables of positions.";
 
+/** The fragment of a link within a text. @param {string} text */
+const fragmentOf = (text) =>
+  text
+    .slice(text.indexOf("#") + 1)
+    .trim()
+    .split(/\s/, 1)[0];
+
+/** Whether a table with this first line has packets. @param {string} line */
+const isPacketTable = (line) => /(^|,)start_(cycle|s)(,|\s*$)/.test(line) && /(^|,)bytes(,|\s*$)/.test(line);
+
+/** Whether a file with this first line has edges, as CSV or trace. @param {string} line */
+const isEdgeTable = (line) => /^cycle,/.test(line) || /^[0-9a-f]+ [0-9a-f]+\s*$/.test(line);
+
 /** @param {Given} page @param {File[]} files */
 export async function openFiles({ engine, openLink, problemText, dispatch, now }, files) {
-  if (files.length > 1) return notify("error", `${files.length} files at once; drop one. ${KINDS_OF_FILES}`);
+  if (files.length > 1)
+    return notify("error", `${files.length} files were given; open one at a time. ${KINDS_OF_FILES}`);
   return open(files[0]);
 
   /** @param {"info" | "error"} kind @param {string} text @param {import("../state/types.js").TraceLocation | null} [location] */
@@ -40,17 +55,11 @@ export async function openFiles({ engine, openLink, problemText, dispatch, now }
   async function open(file) {
     try {
       const head = (await file.slice(0, HEAD_BYTES).text()).replace(/^\ufeff/, "").trimStart();
-      const [first] = head.split("\n", 1);
-      if (head.startsWith("{")) await scenario(file);
-      else if (file.size <= HEAD_BYTES && LINK.test(head))
-        await openLink(
-          head
-            .slice(head.indexOf("#") + 1)
-            .trim()
-            .split(/\s/, 1)[0],
-        );
-      else if (/(^|,)start_(cycle|s)(,|\s*$)/.test(first) && /(^|,)bytes(,|\s*$)/.test(first)) await packets(file);
-      else if (/^cycle,/.test(first) || /^[0-9a-f]+ [0-9a-f]+\s*$/.test(first)) await edges(file);
+      const [firstLine] = head.split("\n", 1);
+      if (head.startsWith("{")) await openScenarioFile(file);
+      else if (file.size <= HEAD_BYTES && LINK.test(head)) await openLink(fragmentOf(head));
+      else if (isPacketTable(firstLine)) await replayPackets(file);
+      else if (isEdgeTable(firstLine)) await compareEdges(file);
       else await (await import("./recording/recording.js")).openRecording({ engine, problemText, dispatch, now }, file);
     } catch (error) {
       if (!(error instanceof Dropped)) notify("error", `${file.name} cannot be opened: ${errorMessage(error)}`);
@@ -64,7 +73,7 @@ export async function openFiles({ engine, openLink, problemText, dispatch, now }
   }
 
   /** @param {File} file */
-  async function scenario(file) {
+  async function openScenarioFile(file) {
     await openScenario(
       await textOf(file, MAX_SCENARIO),
       file,
@@ -73,13 +82,10 @@ export async function openFiles({ engine, openLink, problemText, dispatch, now }
   }
 
   /** @param {File} file */
-  async function packets(file) {
-    const text = await engine.compute(
-      "replay",
-      "replay",
-      await textOf(file, MAX_TABLE),
-      JSON.stringify(now().scenario),
-    );
+  async function replayPackets(file) {
+    const slot = "replay";
+    const table = await textOf(file, MAX_TABLE);
+    const text = await engine.compute(slot, "replay", table, JSON.stringify(now().scenario));
     await openScenario(
       text,
       file,
@@ -107,7 +113,7 @@ export async function openFiles({ engine, openLink, problemText, dispatch, now }
   }
 
   /** Compares saved edges with the run. @param {File} file */
-  async function edges(file) {
+  async function compareEdges(file) {
     const { result } = now();
     if (!result) throw new Error("there is no run to compare with");
     if (isStale(now())) throw new Error("the current experiment has not run; fix the form or run it, then compare");
@@ -116,7 +122,8 @@ export async function openFiles({ engine, openLink, problemText, dispatch, now }
       await request("open", "trace_file", json, controller);
       for (let at = 0; at < file.size; at += PIECE) {
         const piece = new Uint8Array(await file.slice(at, at + PIECE).arrayBuffer());
-        if (await request("of", "feed", piece)) break;
+        const differs = await request("of", "feed", piece);
+        if (differs) break;
         if (at > 0) notify("info", `Comparing ${file.name}: ${Math.round((100 * at) / file.size)} %`);
       }
       return request("of", "end");
@@ -130,13 +137,13 @@ export async function openFiles({ engine, openLink, problemText, dispatch, now }
       const all = start_cycle === 0 && !goes_on;
       const range = all
         ? "the whole run"
-        : `this run from ${seconds(start_cycle)} to ${seconds(end_cycle)}; the file has no other times`;
+        : `this run from ${seconds(start_cycle)} to ${seconds(end_cycle)} (the file covers no more)`;
       return notify("info", `${file.name} is bit-identical: ${count(same)} rows, ${range}.`);
     }
     const { cycle, line, signals } = difference;
     const changes = signals.map(
-      (/** @type {[string, number, number]} */ [name, file, run]) =>
-        `${name} is ${file} in the file, but ${run} in the run`,
+      (/** @type {[string, number, number]} */ [name, inFile, inRun]) =>
+        `${name} is ${inFile} in the file, but ${inRun} in the run`,
     );
     const what =
       changes.length > 0

@@ -9,20 +9,20 @@ import { loadHistory, loadLastValid, loadNewer, loadPrevious, loadScenario } fro
 /**
  * The saved work of the user, which may have problems. Undo restores the work that it replaced.
  * @param {Engine} engine @param {string} fallback  The scenario of a first visit. @param {string} version  Of the page; the history of another version is ignored.
- * @returns {Promise<{left: State, good: string | null}>}  `good` is the last scenario that ran, if this one cannot.
+ * @returns {Promise<{saved: State, lastValid: string | null}>}  `lastValid` is the last scenario that ran, if this one cannot.
  */
 export async function savedWork(engine, fallback, version) {
-  const [saved, previous] = [loadScenario(), loadPrevious()];
-  if (saved === null) return { left: initial(readJson(fallback)), good: null };
+  const [own, previous] = [loadScenario(), loadPrevious()];
+  if (own === null) return { saved: initial(readJson(fallback)), lastValid: null };
   // If the core cannot be loaded, the scenario stays as it was saved.
   const read = (/** @type {string} */ json) =>
     engine.request("check", json).catch(() => ({ scenario: json, problems: [] }));
-  const { scenario, problems } = await read(saved);
+  const { scenario, problems } = await read(own);
   const { past, future } = loadHistory(version);
-  const hasPrevious = past.length === 0 && previous !== null && previous !== saved;
+  const hasPrevious = past.length === 0 && previous !== null && previous !== own;
   const history = hasPrevious ? [momentOf((await read(previous)).scenario)] : past;
-  const left = { ...initial(readJson(scenario)), past: history, future };
-  return { left, good: problems.length > 0 ? loadLastValid() : null };
+  const saved = { ...initial(readJson(scenario)), past: history, future };
+  return { saved, lastValid: problems.length > 0 ? loadLastValid() : null };
 }
 
 /** @param {string} scenario @returns {import("../state/types.js").Moment} */

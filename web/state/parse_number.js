@@ -5,13 +5,13 @@
 
 /** @type {{[prefix: string]: number}} */
 const POWERS = { G: 9, M: 6, k: 3, "": 0, c: -2, m: -3, u: -6, n: -9, p: -12 };
-const COMMON = ["G", "M", "k", "", "m", "u", "n", "p"];
-const OF_LENGTHS = ["k", "", "c", "m", "u", "n"];
-const OF_COUNTS = ["M", "k", ""];
-const COUNTED = /^(steps|ticks|cycles|pulses|digits|gridsteps|baud|ppm|deg|rpm)/;
+const SI_PREFIXES = ["G", "M", "k", "", "m", "u", "n", "p"];
+const LENGTH_PREFIXES = ["k", "", "c", "m", "u", "n"];
+const COUNT_PREFIXES = ["M", "k", ""];
+const COUNT_UNITS = /^(steps|ticks|cycles|pulses|digits|gridsteps|baud|ppm|deg|rpm)/;
 
-/** Units with a prefix of their own: "3 m" is 3000 mm. */
-const PREFIXED = /^(m(m|s|A|H|Nm)|n(s)|u(s|F|Nms))(\/.*)?$/;
+/** Units that already contain a prefix: "3 m" is 3000 mm. */
+const PREFIXED_UNITS = ["mm", "ms", "mA", "mH", "mNm", "ns", "us", "uF", "uNms"];
 
 /** Other spellings. @type {{[unit: string]: string[]}} */
 const SPELLINGS = {
@@ -29,11 +29,21 @@ const SPELLINGS = {
   V: ["volt", "volts"],
 };
 
+/** Space within a number, before a group of three digits. */
+const GROUP_SPACE = /(\d)[\s\u202f\u00a0](?=\d{3}(?!\d))/g;
+/** Several groups of three digits after commas, which can only be thousands. */
+const COMMA_GROUPS = /^[-+−]?[1-9]\d{0,2}(?:,\d{3}){2,}(?![\d,])/;
+/** One group of three digits after a comma, which separates thousands for some people and decimals for others. */
+const ONE_COMMA_GROUP = /^[-+−]?[1-9]\d{0,2},\d{3}$/;
 const NUMBER = /^([-+−]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?)\s*(.*)$/;
 
 /** The number and the unit of a text. @param {string} text */
 function split(text) {
-  const match = NUMBER.exec(text.trim().replace(/(\d)[\s\u202f\u00a0](?=\d)/g, "$1"));
+  const joined = text
+    .trim()
+    .replace(GROUP_SPACE, "$1")
+    .replace(COMMA_GROUPS, (groups) => groups.replaceAll(",", ""));
+  const match = NUMBER.exec(joined);
   return match && { digits: match[1], suffix: match[2].trim() };
 }
 
@@ -46,14 +56,13 @@ function split(text) {
  */
 export function parseNumber(text, unit, options = {}) {
   const example = exampleOf(unit, options);
-  if (text.trim() === "") return { message: `A number is missing; use one, such as ${example}.` };
+  if (text.trim() === "") return { message: `Enter a number, such as ${example}.` };
   const parts = split(text);
-  if (!parts) return { message: `“${text.trim()}” is not a number; use one, such as ${example}.` };
+  if (!parts) return { message: `“${text.trim()}” is not a number; enter one such as ${example}.` };
   const { digits, suffix } = parts;
-  // A comma with three digits separates thousands for some people and decimals for others.
-  if (/^[-+−]?[1-9]\d{0,2}(,\d{3})+$/.test(digits)) {
+  if (ONE_COMMA_GROUP.test(digits)) {
     return {
-      message: `“${digits}” can mean ${digits.replaceAll(",", "")} or ${digits.replace(",", ".")}; use a number without a comma.`,
+      message: `“${digits}” can mean ${digits.replace(",", "")} or ${digits.replace(",", ".")}; use a number without a comma.`,
     };
   }
   const mantissa = digits.replace("−", "-").replace(",", ".");
@@ -61,7 +70,7 @@ export function parseNumber(text, unit, options = {}) {
   if (value !== null) return checked(value, options, text);
   if (unit === "cycles" && options.clockHz) {
     const seconds = converted(mantissa, suffix, "s");
-    if (seconds !== null) return { value: Math.round(seconds * options.clockHz) };
+    if (seconds !== null) return checked(Math.round(seconds * options.clockHz), options, text);
   }
   const allowed = unit === "cycles" ? "cycles or a time, such as 2.5 us" : unit || "a number without a unit";
   return { message: `“${suffix}” is not a unit of this field; use ${allowed}.` };
@@ -98,27 +107,46 @@ function exampleOf(unit, { integer }) {
 /** A unit in ASCII: `mN·m` is `mNm`, `°/s` is `deg/s`. @param {string} unit */
 function ascii(unit) {
   return unit
-    .replace(/[µμ]/g, "u")
-    .replace(/[ΩΩ]/g, "ohm")
+    .replace(/[\u00b5\u03bc]/g, "u")
+    .replace(/[\u03a9\u2126]/g, "ohm")
     .replace(/°/g, "deg")
     .replace(/²|\^2/g, "2")
     .replace(/³|\^3/g, "3")
     .replace(/[·*\s]/g, "");
 }
 
+/** The unit without its prefix, and the power of ten of that prefix. @param {string} unit */
+function baseOf(unit) {
+  const isPrefixed = PREFIXED_UNITS.includes(unit.split("/", 1)[0]);
+  return isPrefixed ? { base: unit.slice(1), ownPower: POWERS[unit[0]] } : { base: unit, ownPower: 0 };
+}
+
+/** The prefixes that a unit can have. @param {string} base */
+function prefixesOf(base) {
+  if (COUNT_UNITS.test(base)) return COUNT_PREFIXES;
+  return /^m(\/|$)/.test(base) ? LENGTH_PREFIXES : SI_PREFIXES;
+}
+
+/** The prefix of a typed unit if it ends with `name`; else null. @param {string} given @param {string} name */
+function prefixBefore(given, name) {
+  // Short names are case-sensitive, like the prefixes m and M.
+  const isAtEnd = name.length > 2 ? given.toLowerCase().endsWith(name.toLowerCase()) : given.endsWith(name);
+  return isAtEnd ? given.slice(0, given.length - name.length) : null;
+}
+
 /** The value in a unit; null if the suffix does not fit. @param {string} mantissa @param {string} suffix @param {string} unit */
 function converted(mantissa, suffix, unit) {
-  const [given, wanted] = [ascii(suffix), ascii(unit)];
+  const given = ascii(suffix);
   if (given === "") return Number(mantissa);
-  const own = PREFIXED.test(wanted) ? POWERS[wanted[0]] : 0;
-  const base = own === 0 ? wanted : wanted.slice(1);
-  const prefixes = COUNTED.test(base) ? OF_COUNTS : /^m(\/|$)/.test(base) && own !== 0 ? OF_LENGTHS : COMMON;
-  // A prefix alone is enough for units without one.
-  for (const name of [base, ...(SPELLINGS[base] ?? []), ...(own === 0 ? [""] : [])]) {
-    const isAtEnd = name.length > 2 ? given.toLowerCase().endsWith(name.toLowerCase()) : given.endsWith(name);
-    const prefix = isAtEnd ? given.slice(0, given.length - name.length) : null;
+  const { base, ownPower } = baseOf(ascii(unit));
+  const prefixes = prefixesOf(base);
+  const names = [base, ...(SPELLINGS[base] ?? [])];
+  // "5 m" means 5 ms if the field's unit is s.
+  if (ownPower === 0) names.push("");
+  for (const name of names) {
+    const prefix = prefixBefore(given, name);
     // Shifted as text, so that 50 us is exactly 0.00005.
-    if (prefix !== null && prefixes.includes(prefix)) return Number(shifted(mantissa, POWERS[prefix] - own));
+    if (prefix !== null && prefixes.includes(prefix)) return Number(shifted(mantissa, POWERS[prefix] - ownPower));
   }
   return null;
 }

@@ -6,7 +6,7 @@ import { clamp, endOf, requestedWindow } from "./time_window.js";
 /** @typedef {import("./types.js").State} State */
 
 /** Revision of the last valid run of an earlier visit, shown while the form has problems. */
-export const EARLIER = -1;
+export const EARLIER_REVISION = -1;
 
 /** @param {State} state @param {{revision: number, validation: import("./types.js").Validation}} message @returns {State} */
 export function validated(state, { revision, validation }) {
@@ -16,7 +16,7 @@ export function validated(state, { revision, validation }) {
 
 /** @param {State} state @param {{revision: number, summary: import("./types.js").Summary, ms: number}} message @returns {State} */
 export function done(state, { revision, summary, ms }) {
-  const earlier = revision === EARLIER && state.result === null;
+  const earlier = revision === EARLIER_REVISION && state.result === null;
   if (revision !== state.revision && !earlier) return state;
   /** @type {State["run"]} */
   const run = earlier ? state.run : { phase: "done", progress: null, message: "" };

@@ -29,36 +29,39 @@ export function createOverview(capture, choose) {
   node.hidden = true;
   /** @type {Preview | null} */
   let preview = null;
-  /** Key and number of the last requested columns. */
-  let [requestedKey, requestedCount] = ["", 0];
+  /** Key and canvas width of the last requested columns. */
+  let [requestedKey, requestedWidth] = ["", 0];
   /** @type {Columns | null} */
   let columns = null;
   let timer = 0;
   /** Start and current end of a drag, in s. @type {[number, number] | null} */
   let drag = null;
 
-  const end = () => preview?.part?.end_s ?? preview?.end_s ?? 0;
+  const endTime = () => preview?.part?.end_s ?? preview?.end_s ?? 0;
   /** The time under a pointer, rounded to the resolution of a pixel. @param {PointerEvent} event */
-  const at = ({ clientX }) => {
+  const timeAt = ({ clientX }) => {
     const { left, width } = canvas.getBoundingClientRect();
-    const digits = Math.min(9, Math.max(0, Math.ceil(-Math.log10(end() / width))));
-    return Number((Math.min(1, Math.max(0, (clientX - left) / width)) * end()).toFixed(digits));
+    const secondsPerPixel = endTime() / width;
+    const decimals = Math.min(9, Math.max(0, Math.ceil(-Math.log10(secondsPerPixel))));
+    const ratio = Math.min(1, Math.max(0, (clientX - left) / width));
+    return Number((ratio * endTime()).toFixed(decimals));
   };
   canvas.addEventListener("pointerdown", (event) => {
     if (!columns || event.button !== 0) return;
     canvas.setPointerCapture(event.pointerId);
-    drag = [at(event), at(event)];
+    drag = [timeAt(event), timeAt(event)];
   });
   canvas.addEventListener("pointermove", (event) => {
     if (!drag) return;
-    drag[1] = at(event);
+    drag[1] = timeAt(event);
     draw();
   });
   canvas.addEventListener("pointerup", () => {
     if (!drag) return;
     const [from_s, to_s] = drag.sort((a, b) => a - b);
     drag = null;
-    const isClick = ((to_s - from_s) / end()) * canvas.clientWidth < MIN_DRAG_PX;
+    const isClick = ((to_s - from_s) / endTime()) * canvas.clientWidth < MIN_DRAG_PX;
+    // A click selects everything.
     choose(isClick ? null : { from_s, to_s });
   });
   canvas.addEventListener("pointercancel", () => {
@@ -81,13 +84,13 @@ export function createOverview(capture, choose) {
     const width = canvas.clientWidth;
     if (!preview || width === 0) return;
     // A change of the sample rate changes the end time.
-    const key = [preview.map, preview.clock_hz, end(), channel.value].join();
-    if (key === requestedKey && width === requestedCount) return draw();
+    const key = [preview.map, preview.clock_hz, endTime(), channel.value].join();
+    if (key === requestedKey && width === requestedWidth) return draw();
     // Until they arrive, columns of another width are shown, but none of another channel or map.
     if (key !== requestedKey) [columns, caption.textContent] = [null, "…"];
-    [requestedKey, requestedCount] = [key, width];
+    [requestedKey, requestedWidth] = [key, width];
     draw();
-    const isCurrent = () => key === requestedKey && width === requestedCount;
+    const isCurrent = () => key === requestedKey && width === requestedWidth;
     try {
       const found = await capture.overview(Number(channel.value), width);
       if (!isCurrent()) return;
@@ -106,14 +109,14 @@ export function createOverview(capture, choose) {
   function showCaption(text, isError) {
     canvas.setAttribute("aria-label", text);
     caption.classList.toggle("error", isError);
-    caption.textContent = isError ? text : `${text} Drag to select a part.`;
+    caption.textContent = columns ? `${text} Drag to select a part.` : text;
   }
 
   function describe() {
-    if (!columns) return;
-    const [low, high] = rangeOf([columns.position_min, columns.position_max]);
+    if (!columns) return showCaption(`Channel ${channel.value} has no steps.`, false);
+    const [min, max] = rangeOf([columns.position_min, columns.position_max]);
     const speeds = rangeOf([columns.speed_min, columns.speed_max]).map(Math.abs);
-    const text = `Channel ${channel.value}, ${time(end())}: position ${plain(low, "").trim()} to ${plain(high, "steps")}, maximum ${plain(Math.max(...speeds), "steps/s")}.`;
+    const text = `Channel ${channel.value}, ${time(endTime())}: position ${plain(min, "").trim()} to ${plain(max, "steps")}, maximum speed ${plain(Math.max(...speeds), "steps/s")}.`;
     showCaption(text, false);
   }
 
@@ -126,14 +129,14 @@ export function createOverview(capture, choose) {
     pen.scale(ratio, ratio);
     const theme = getComputedStyle(canvas);
     const ink = (/** @type {string} */ name) => theme.getPropertyValue(name);
-    band(pen, columns.position_min, columns.position_max, { width, top: 0, high: POSITION_PX, ink: ink("--actual") });
+    band(pen, columns.position_min, columns.position_max, { width, top: 0, height: POSITION_PX, ink: ink("--actual") });
     const top = POSITION_PX + BETWEEN_PX;
-    band(pen, columns.speed_min, columns.speed_max, { width, top, high: SPEED_PX, ink: ink("--ideal") });
+    band(pen, columns.speed_min, columns.speed_max, { width, top, height: SPEED_PX, ink: ink("--ideal") });
     const part = drag
       ? [Math.min(...drag), Math.max(...drag)]
       : preview?.part && [preview.part.from_s, preview.part.to_s];
     if (!part) return;
-    const [from, to] = part.map((at_s) => (at_s / end()) * width);
+    const [from, to] = part.map((at_s) => (at_s / endTime()) * width);
     pen.globalAlpha = COVER_OPACITY;
     pen.fillStyle = ink("--pane");
     pen.fillRect(0, 0, from, height);
@@ -162,24 +165,24 @@ export function createOverview(capture, choose) {
   };
 }
 
-/** Minimum and maximum of all values and 0. @param {number[][]} all @returns {number[]} */
-function rangeOf(all) {
-  const values = all.flat().filter(Number.isFinite);
+/** Minimum and maximum of all values and 0. @param {number[][]} lists @returns {number[]} */
+function rangeOf(lists) {
+  const values = lists.flat().filter(Number.isFinite);
   return [values.reduce((a, b) => Math.min(a, b), 0), values.reduce((a, b) => Math.max(a, b), 0)];
 }
 
 /**
  * Draws columns from their minimum to their maximum.
- * @param {CanvasRenderingContext2D} pen @param {number[]} min @param {number[]} max
- * @param {{width: number, top: number, high: number, ink: string}} place
+ * @param {CanvasRenderingContext2D} pen @param {number[]} minima @param {number[]} maxima
+ * @param {{width: number, top: number, height: number, ink: string}} place
  */
-function band(pen, min, max, { width, top, high, ink }) {
-  const [low, most] = rangeOf([min, max]);
-  const y = (/** @type {number} */ value) => top + (high - 1) * (1 - (value - low) / (most - low || 1));
+function band(pen, minima, maxima, { width, top, height, ink }) {
+  const [min, max] = rangeOf([minima, maxima]);
+  const y = (/** @type {number} */ value) => top + (height - 1) * (1 - (value - min) / (max - min || 1));
+  const columnWidth = width / maxima.length;
   pen.fillStyle = ink;
-  for (const [at, value] of max.entries()) {
+  for (const [index, value] of maxima.entries()) {
     if (!Number.isFinite(value)) continue;
-    const each = width / max.length;
-    pen.fillRect(at * each, y(value), Math.max(1, each), Math.max(1, y(min[at]) - y(value) + 1));
+    pen.fillRect(index * columnWidth, y(value), Math.max(1, columnWidth), Math.max(1, y(minima[index]) - y(value) + 1));
   }
 }
