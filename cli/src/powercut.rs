@@ -64,7 +64,7 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
         Failure::invalid(path, why)
     };
     let (_, experiment) = scenarios::validated_after(path, |scenario| {
-        if matches!(scenario.source, Source::Standalone(_)) { Ok(()) } else { Err(missing()) }
+        if matches!(scenario.source, Source::StandAlone(_)) { Ok(()) } else { Err(missing()) }
     })?;
     let setup = experiment.stand_alone().ok_or_else(missing)?;
     let cost = experiment.cost();

@@ -105,7 +105,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut outputs = Outputs::default();
     let mut timing = None;
     let (scenario, experiment) = scenarios::validated_after(path, |scenario| {
-        if arguments.panel.is_some() && !matches!(scenario.source, Source::Standalone(_)) {
+        if arguments.panel.is_some() && !matches!(scenario.source, Source::StandAlone(_)) {
             let why = "--panel: the scenario has no stand-alone controller; omit the option, or use a preset such as zhang-2012-controller";
             return Err(Failure::invalid(path, why));
         }

@@ -62,7 +62,7 @@ fn print_figures(out: &mut impl Write, ChannelReport { channel, figures }: &Chan
     )?;
     writeln!(out, "  from {} s to {} s", of.first_s, of.last_s)?;
     if let (Some(greatest), Some(mean), Some(shortest), Some(at), Some(longest)) = (
-        of.greatest_rate_steps_s,
+        of.max_rate_steps_s,
         of.mean_rate_steps_s,
         of.shortest_interval_s,
         of.shortest_at_s,

@@ -154,7 +154,7 @@ mod tests {
         session.advance::<Digest>(Instant(cycles), &mut []);
         let recording = session.recording();
         recording.verify().expect("the same");
-        let stepscope_core::scenario::Source::Standalone(controllers) = recording.scenario.source else {
+        let stepscope_core::scenario::Source::StandAlone(controllers) = recording.scenario.source else {
             panic!("it is")
         };
         let name = |signal: Option<Signal>| signal.map_or("push", Signal::name);

@@ -8,18 +8,17 @@
 //! let capture = read(std::io::Cursor::new(dump), &Limits::default(), &mut |_| true).capture;
 //! let loaded = LoadedCapture::new(capture, &OpenOptions::default()).expect("a channel map is proposed");
 //! assert_eq!(loaded.map, "STEP0=STEP");
-//! assert_eq!(loaded.report.channels[0].figures.greatest_rate_steps_s, Some(100_000.0));
+//! assert_eq!(loaded.report.channels[0].figures.max_rate_steps_s, Some(100_000.0));
 //! ```
 
 pub mod alignment;
+mod compared_data;
 pub mod differences;
 mod drift;
 pub mod events;
 pub mod figures;
 pub mod loaded_capture;
 mod matching;
-#[cfg(test)]
-mod noise;
 pub mod open_options;
 pub mod overview;
 pub mod packets;
@@ -28,5 +27,6 @@ pub mod replies;
 pub mod report;
 pub mod scenario;
 pub mod serial;
-mod side;
+#[cfg(test)]
+mod test_random;
 pub mod tolerance;

@@ -47,7 +47,7 @@ impl CheckedScenario {
     /// Whether the host waits for a reply before it sends the next frame.
     pub fn waits_for_replies(&self) -> bool {
         let is_framed = self.configs.first().is_some_and(|config| config.protocol() == Protocol::Framed);
-        is_framed && self.source.is_ticks()
+        is_framed && self.source.sends_ticks()
     }
 }
 
@@ -72,7 +72,7 @@ impl Scenario {
             Source::Packets(packets) => self.check_packets(packets, &mut validator),
             Source::Line(script) => self.check_script(script, &mut validator),
             Source::Segments(lists) => segments = validator.take(lists.check(&self.bus)),
-            Source::Standalone(controllers) => {
+            Source::StandAlone(controllers) => {
                 stand_alone = self.check_stand_alone(controllers, &mut validator);
             }
         }
@@ -108,7 +108,7 @@ impl Scenario {
     }
 
     fn check_first_controller(&self, validator: &mut Validator) -> Option<Config> {
-        let has_no_line = self.source.runs_alone();
+        let has_no_line = self.source.sends_nothing();
         let configure = if has_no_line { Config::of_segments } else { Config::new };
         let config = configure(self.clock_hz, &self.bus, &self.line.serial());
         let config = config.map_err(|problems| add_unless_out_of_range(problems, validator)).ok();
@@ -151,9 +151,9 @@ impl Scenario {
         if self.controllers.is_empty() {
             return Vec::new();
         }
-        if self.source.runs_alone() {
+        if self.source.sends_nothing() {
             let detail = match self.source {
-                Source::Standalone(_) => {
+                Source::StandAlone(_) => {
                     "stand-alone controllers share no line; add each one to `source.standalone` instead"
                 }
                 _ => "segments run only one controller; remove the others, or choose ticks",
@@ -236,7 +236,7 @@ impl Scenario {
 
     /// Replies arrive at the host's own bit rate.
     fn check_host_rate(&self, validator: &mut Validator) {
-        let receives_replies = self.line.protocol == Protocol::Framed && self.source.is_ticks();
+        let receives_replies = self.line.protocol == Protocol::Framed && self.source.sends_ticks();
         if receives_replies && self.line.receiver_baud.is_some() {
             let host = SerialLine { receiver_baud: None, ..self.line.serial() };
             let problems = Config::new(self.clock_hz, &Bus::default(), &host).err().unwrap_or_default();
@@ -257,7 +257,7 @@ impl Scenario {
     }
 
     fn check_script(&self, script: &LineScript, validator: &mut Validator) {
-        let total = script.sends.iter().map(|send| send.wire().len()).sum();
+        let total = script.sends.iter().map(|send| send.line_bytes().len()).sum();
         validator.length("source.line.sends", total, 0..=MAX_BYTES, "bytes");
         let mut free_from = 1;
         let outside = validator.enter("source.line.sends");
@@ -272,7 +272,7 @@ impl Scenario {
                     here.add("bytes", ValueError::Conflict { detail });
                 }
             });
-            let bytes = send.wire().len() as u64;
+            let bytes = send.line_bytes().len() as u64;
             let end = start.min(END_OF_TIME) + line_time(bytes, self.clock_hz, self.line.baud);
             free_from = free_from.max(end);
         }

@@ -1,6 +1,6 @@
 //! Bytes as hexadecimal text.
 
-use crate::{Json, Read, Reader};
+use crate::{Json, JsonReader, ReadJson};
 use alloc::{format, string::String, vec::Vec};
 use base16ct::{lower, mixed};
 use serde_json::Value;
@@ -9,8 +9,8 @@ use serde_json::Value;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Hex(pub Vec<u8>);
 
-impl Read for Hex {
-    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+impl ReadJson for Hex {
+    fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool {
         let Some(text) = value.text() else {
             return reader.reject_type(value, "bytes in hex, such as \"80 01 7f\"");
         };

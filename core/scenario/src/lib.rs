@@ -75,7 +75,7 @@ pub use plant::Plants;
 pub use points::points_of_table;
 pub use problem::{Cause, Problem, Validator, ValueError, of_config, of_motion};
 pub use read::{part_from_json, to_json};
-pub use reader::{Read, Reader};
+pub use reader::{JsonReader, ReadJson};
 pub use schema::{
     Analysis, ChannelSegments, Controller, DriverModel, DriverTiming, DwellSegment, Glitch, Host, Line,
     LineScript, Motion, MotionEngine, Noise, Packets, Scenario, ScriptedSend, Segment, SegmentLists, Source,

@@ -57,7 +57,7 @@ impl Scenario {
     /// A self-test steps each motor there and back (F7).
     fn check_self_test(&self, configs: &[Config], validator: &mut Validator) {
         for (index, config) in configs.iter().enumerate() {
-            if self.source.runs_alone() {
+            if self.source.sends_nothing() {
                 let detail = "segments and stand-alone controllers have no self-test; choose ticks, or set it to false";
                 validator.add("plant.self_test", ValueError::Conflict { detail });
                 return;

@@ -1,12 +1,12 @@
 //! Reads points of a profile (DESIGN B6) from a scenario or a table.
 
 use crate::table::{BadTable, Rows, short};
-use crate::{Json, Parts, Read, Reader, ToParts};
+use crate::{Json, JsonReader, Parts, ReadJson, ToParts};
 use alloc::{borrow::ToOwned, format, string::String, vec, vec::Vec};
 use stepscope_motion::moves::{MAX_POINTS, Point};
 
-impl Read for Point {
-    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+impl ReadJson for Point {
+    fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool {
         let expected = "a point's time in s and its position, such as [0.25, 12.5]";
         let Some(numbers) = value.list() else { return reader.reject_type(value, expected) };
         let [time_s, position] = &numbers[..] else {

@@ -1,7 +1,7 @@
 //! Reads scenarios of any version from JSON text, and writes them.
 
 use crate::{
-    Cause, Compact, Json, MAX_TEXT_BYTES, Problem, Read, Scenario, ToParts, VERSION, compact,
+    Cause, Compact, Json, MAX_TEXT_BYTES, Problem, ReadJson, Scenario, ToParts, VERSION, compact,
     reader::read_into,
 };
 use alloc::string::{String, ToString};
@@ -70,7 +70,7 @@ fn without_problems((scenario, problems): (Scenario, Vec<Problem>)) -> Result<Sc
 ///
 /// # Errors
 /// Every field of the wrong type or name, with its path in the part.
-pub fn part_from_json<T: Read>(text: &str) -> Result<T, Vec<Problem>> {
+pub fn part_from_json<T: ReadJson>(text: &str) -> Result<T, Vec<Problem>> {
     let mut part = T::blank();
     let problems = read_into(&mut part, parse(text)?, ANY_VERSION);
     if problems.is_empty() { Ok(part) } else { Err(problems) }

@@ -13,9 +13,9 @@ use core::{fmt::Display, mem::size_of};
 const MAX_LIST_BYTES: usize = 256 << 20;
 
 /// A type that can be read from JSON.
-pub trait Read {
+pub trait ReadJson {
     /// Reads a value. Returns false, noted in `reader`, if it has the wrong type.
-    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool;
+    fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool;
 
     /// The initial value of a list entry.
     fn blank() -> Self
@@ -25,7 +25,7 @@ pub trait Read {
 
 /// Path, problems and rules while reading.
 #[derive(Default)]
-pub struct Reader {
+pub struct JsonReader {
     validator: Validator,
     row: Option<&'static Field>,
     /// Version of the text, which decides which old names are accepted.
@@ -33,13 +33,13 @@ pub struct Reader {
 }
 
 /// Returns all problems, at most [`stepscope_motion::MAX_PROBLEMS`].
-pub(super) fn read_into(target: &mut dyn Read, value: Json<'_>, version: u32) -> Vec<Problem> {
-    let mut reader = Reader { version, ..Reader::default() };
+pub(super) fn read_into(target: &mut dyn ReadJson, value: Json<'_>, version: u32) -> Vec<Problem> {
+    let mut reader = JsonReader { version, ..JsonReader::default() };
     target.read(value, &mut reader);
     reader.validator.problems()
 }
 
-impl Reader {
+impl JsonReader {
     fn note(&mut self, detail: String) {
         self.validator.add("", Cause::Type { detail });
     }
@@ -92,7 +92,7 @@ impl Reader {
         row: Option<&'static Field>,
         name: &str,
         value: Json<'_>,
-        target: &mut dyn Read,
+        target: &mut dyn ReadJson,
     ) -> bool {
         let (path_before, row_before) = (self.validator.enter(name), core::mem::replace(&mut self.row, row));
         let is_read = target.read(value, self);
@@ -101,7 +101,7 @@ impl Reader {
         is_read
     }
 
-    pub(super) fn read_entry(&mut self, index: usize, value: Json<'_>, target: &mut dyn Read) -> bool {
+    pub(super) fn read_entry(&mut self, index: usize, value: Json<'_>, target: &mut dyn ReadJson) -> bool {
         let (path_before, row_before) = (self.validator.enter_entry(index), self.row.take());
         let is_read = target.read(value, self);
         self.row = row_before;
@@ -131,7 +131,7 @@ impl Reader {
         &mut self,
         value: Json<'_>,
         group: &'static Group,
-        targets: &mut [&mut dyn Read],
+        targets: &mut [&mut dyn ReadJson],
     ) -> bool {
         let mut given = Vec::new();
         // A new name wins over the old one wherever it is in the text.
@@ -167,7 +167,7 @@ impl Reader {
         given: &mut Vec<&'static str>,
         (written, index): (&str, usize),
         value: Json<'_>,
-        target: &mut dyn Read,
+        target: &mut dyn ReadJson,
     ) {
         let Some(row) = group.fields.get(index) else { return };
         if given.contains(&row.name) {
@@ -279,8 +279,8 @@ fn describe(value: Json<'_>) -> String {
 
 macro_rules! whole {
     ($($ty:ty: $negative:expr),*) => {$(
-        impl Read for $ty {
-            fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+        impl ReadJson for $ty {
+            fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool {
                 let negative: fn(u64) -> Option<Self> = $negative;
                 let found = value.whole().and_then(|(is_negative, magnitude)| {
                     if is_negative { negative(magnitude) } else { Self::try_from(magnitude).ok() }
@@ -305,8 +305,8 @@ macro_rules! whole {
 }
 whole!(u8: |_| None, u16: |_| None, u32: |_| None, u64: |_| None, i64: |magnitude| 0_i64.checked_sub_unsigned(magnitude));
 
-impl Read for f64 {
-    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+impl ReadJson for f64 {
+    fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool {
         match value.number() {
             Some(number) => {
                 *self = number;
@@ -321,8 +321,8 @@ impl Read for f64 {
     }
 }
 
-impl Read for bool {
-    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+impl ReadJson for bool {
+    fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool {
         match value.raw() {
             "true" => *self = true,
             "false" => *self = false,
@@ -336,8 +336,8 @@ impl Read for bool {
     }
 }
 
-impl Read for String {
-    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+impl ReadJson for String {
+    fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool {
         match value.text() {
             Some(text) => {
                 *self = text.to_string();
@@ -352,8 +352,8 @@ impl Read for String {
     }
 }
 
-impl<T: Read> Read for Option<T> {
-    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+impl<T: ReadJson> ReadJson for Option<T> {
+    fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool {
         if value.is_null() {
             *self = None;
             return true;
@@ -371,8 +371,8 @@ impl<T: Read> Read for Option<T> {
     }
 }
 
-impl<T: Read> Read for Vec<T> {
-    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+impl<T: ReadJson> ReadJson for Vec<T> {
+    fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool {
         if !value.is_list() {
             return reader.reject_length(value, "a list");
         }

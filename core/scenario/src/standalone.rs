@@ -2,7 +2,8 @@
 //! (CONTROLLER.md).
 
 use crate::{
-    Cause, Hex, Json, Parts, Read, Reader, Scenario, StandAlone, ToParts, Validator, ValueError, of_motion,
+    Cause, Hex, Json, JsonReader, Parts, ReadJson, Scenario, StandAlone, ToParts, Validator, ValueError,
+    of_motion,
     schema::{
         Homing, PanelInput, ProfileGroup, ProgramGroup, Sensor, SoftLimits, Switch, Type, Typed, Until,
         VirtualAxis,
@@ -295,8 +296,8 @@ impl PanelInput {
     }
 }
 
-impl Read for Initial {
-    fn read(&mut self, value: Json<'_>, reader: &mut Reader) -> bool {
+impl ReadJson for Initial {
+    fn read(&mut self, value: Json<'_>, reader: &mut JsonReader) -> bool {
         let Some(text) = value.text() else {
             return reader.reject_type(value, "\"blank\", \"factory\" or bytes in hex, such as \"01 00 ff\"");
         };

@@ -115,7 +115,7 @@ fn ticks_of(
 ) -> Result<Vec<u8>, Vec<Problem>> {
     let additional = index.checked_sub(1).and_then(|index| checked.additional.get(index));
     Ok(match &checked.source {
-        source if !source.is_ticks() => Vec::new(),
+        source if !source.sends_ticks() => Vec::new(),
         Source::Motion(_) if plans.is_empty() => Vec::new(),
         Source::Motion(_) => {
             let tick = config.tick().0;
@@ -138,7 +138,7 @@ pub(super) fn segments(
     controllers: &[ControllerPlan],
 ) -> Result<Option<CheckedSegments>, Vec<Problem>> {
     match (&checked.source, controllers.first()) {
-        (Source::Motion(_), Some(ControllerPlan { config, plans, .. })) if checked.source.runs_segments() => {
+        (Source::Motion(_), Some(ControllerPlan { config, plans, .. })) if checked.source.uses_segments() => {
             let pulse = PulseTimes::from(config);
             let lists = exact_segments(plans, AxesPath::MOTION, config.channels(), pulse, config.clock_hz());
             lists.map(Some).map_err(of_motion)
@@ -262,7 +262,7 @@ pub(super) fn job(config: &Config, ticks: &Rc<[u8]>) -> Job {
 /// The line's load while all controllers move, 0 to 1; `None` without ticks. Errors: above 1, with the required rate.
 pub(super) fn line_load<'a>(checked: &'a CheckedScenario) -> Result<Option<f64>, Problem> {
     let Some(first) = checked.configs.first() else { return Ok(None) };
-    if !checked.source.is_ticks() {
+    if !checked.source.sends_ticks() {
         return Ok(None);
     }
     let (clock_hz, tick) = (first.clock_hz(), first.tick().0);

@@ -168,7 +168,7 @@ fn tick_records(checked: &CheckedScenario, plan: &ControllerPlan, schedule: &Sch
 }
 
 fn arrives_as_scheduled(checked: &CheckedScenario, config: &Config) -> bool {
-    checked.source.is_ticks() && is_faithful(checked, config)
+    checked.source.sends_ticks() && is_faithful(checked, config)
 }
 
 fn is_faithful(checked: &CheckedScenario, config: &Config) -> bool {

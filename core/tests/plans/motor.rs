@@ -11,7 +11,7 @@ fn a_motors_numbers_are_judged_with_their_paths() {
         r#"{"motor":{"inductance_mh":0,"peak_current_a":2.2,"load_inertia_g_cm2":-1,"working_rate_hz":0}}"#,
         &[
             "axis.motor.inductance_mh: 0 mH is out of range; use 0.001 to 10000 mH",
-            "axis.motor.peak_current_a: 2.2 A is out of range; use 0.0015 to 2.1213 A",
+            "axis.motor.peak_current_a: 2.2 A is out of range; use 0.0015 to 2.1214 A",
             "axis.motor.load_inertia_g_cm2: -1 g*cm^2 is out of range; use 0 to 1000000000 g*cm^2",
             "axis.motor.working_rate_hz: 0 steps/s is out of range; use 1 to 10000000 steps/s",
         ],

@@ -321,7 +321,7 @@ fn look_at(opened: &LoadedCapture) {
         assert!(steps.windows(2).all(|pair| pair[0].cycle <= pair[1].cycle));
         let figures = channel.figures;
         assert_eq!((figures.steps, figures.right + figures.left), (steps.len() as u64, steps.len() as u64));
-        let rates = [figures.greatest_rate_steps_s, figures.greatest_acceleration_steps_s2];
+        let rates = [figures.max_rate_steps_s, figures.greatest_acceleration_steps_s2];
         assert!(rates.into_iter().flatten().all(f64::is_finite), "{figures:?}");
         let side = Side { steps: &steps, clock_hz: opened.clock_hz, values: &[] };
         let found =

@@ -153,7 +153,7 @@ fn steps_without_a_motion_are_measured_by_themselves_as_the_core_has_them() -> R
         close(&one("shortest interval").await?, figures.shortest_interval_s.expect("steps"))?;
         close(&one("longest interval").await?, figures.longest_interval_s.expect("steps"))?;
         let rate = one("maximum rate").await?;
-        assert_eq!(rate, format!("{} steps/s", figures.greatest_rate_steps_s.expect("steps")));
+        assert_eq!(rate, format!("{} steps/s", figures.max_rate_steps_s.expect("steps")));
         // They go to and fro evenly, so what is distorted is known of the pulses alone.
         let distortion = cells(&page, "Distortion", "speed", 0).await?;
         ensure!(distortion[0] == "–" && distortion[1].ends_with('%'), "{distortion:?}");

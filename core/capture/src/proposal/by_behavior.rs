@@ -1,7 +1,7 @@
 //! Finds encoders, serial lines and STEP among channels whose names are unknown.
 
 use super::motor::{Motor, Source};
-use super::{behavior::MIN_STEPS, draft::Draft, timing::has_steps_between};
+use super::{behavior::MIN_STEPS, draft::Draft, timing::has_pulses_between};
 use crate::names::{Kind, Meaning};
 use crate::{channel_map::Entry, uart::IdleLevel};
 use stepscope_peripheral::signal::Levels;
@@ -66,7 +66,7 @@ impl Draft<'_> {
         let max_width = self.behavior(busiest).longest_pulse().saturating_mul(MAX_WIDTH_RATIO);
         for channel in channels {
             let is_wide = self.behavior(channel).longest_pulse() > max_width;
-            let is_slow = || has_steps_between(&self.edges(channel), &edges, SLOW_PERCENT);
+            let is_slow = || has_pulses_between(&self.edges(channel), &edges, SLOW_PERCENT);
             if channel != busiest && (is_wide || is_slow()) {
                 continue;
             }

@@ -17,7 +17,7 @@ impl Draft<'_> {
         for (kind, bit) in [(Kind::En, EN), (Kind::Rx, RX), (Kind::Tx, TX), (Kind::De, DE)] {
             let named = self.named(kind);
             let is_line = matches!(kind, Kind::Rx | Kind::Tx);
-            let may_be = |channel: usize| !is_line || !self.behavior(channel).has_equal_pulses();
+            let may_be = |channel: usize| !is_line || !self.behavior(channel).has_uniform_pulses();
             if let Some((channel, named)) = named.into_iter().find(|(channel, _)| may_be(*channel)) {
                 let idles_low = is_line && self.behavior(channel).line == Some(IdleLevel::Low);
                 self.bus_signals.push(Entry { bit, channel, inverted: named.inverted || idles_low });

@@ -1,12 +1,12 @@
 //! Assigns DIR channels to motors by their levels.
 
-use super::timing::{has_steps_between, is_next_to, nearness};
+use super::timing::{are_close_to_pulses, has_pulses_between, total_distance};
 use super::{behavior::MIN_STEPS, draft::Draft};
 use crate::names::shared_words;
 use std::collections::BTreeSet;
 
-/// Minimum share of a candidate's changes that have steps between them, in percent, if it changes during pulses.
-const STEPS_BETWEEN_PERCENT: usize = 50;
+/// Minimum share of a candidate's intervals that contain pulses, in percent, if it changes during pulses.
+const PULSES_BETWEEN_PERCENT: usize = 50;
 
 /// A motor without a DIR.
 struct MotorEdges {
@@ -77,7 +77,7 @@ impl Draft<'_> {
     fn candidates(&self, channel: usize, motors: &[MotorEdges]) -> Vec<Candidate> {
         let name = |channel: usize| self.capture.channels.get(channel).map_or("", |channel| &channel.name);
         let changes = self.edges(channel);
-        let near: Vec<u64> = motors.iter().map(|motor| nearness(&changes, &motor.edges)).collect();
+        let distances: Vec<u64> = motors.iter().map(|motor| total_distance(&changes, &motor.edges)).collect();
         let words: Vec<usize> =
             motors.iter().map(|motor| shared_words(name(motor.channel), name(channel))).collect();
         let mut candidates = Vec::new();
@@ -85,20 +85,25 @@ impl Draft<'_> {
             if changes.len() * 2 > motor.edges.len() {
                 continue;
             }
-            let own = near.get(at).copied().unwrap_or(u64::MAX);
+            let own = distances.get(at).copied().unwrap_or(u64::MAX);
             let others = || {
-                near.iter().zip(motors).enumerate().filter(|(other, _)| *other != at).map(|(_, pair)| pair)
+                distances
+                    .iter()
+                    .zip(motors)
+                    .enumerate()
+                    .filter(|(other, _)| *other != at)
+                    .map(|(_, pair)| pair)
             };
-            let is_nearer = |near: u64, other: &MotorEdges| {
-                near.saturating_mul(2) < own && is_next_to(near, changes.len(), &other.edges)
+            let is_nearer = |distance: u64, other: &MotorEdges| {
+                distance.saturating_mul(2) < own && are_close_to_pulses(distance, changes.len(), &other.edges)
             };
             // Names count before levels: X-Foo and X-Bar belong to one motor.
             let fits_another_motor = if words.iter().max() > words.iter().min() {
                 words.get(at) < words.iter().max()
             } else {
-                others().any(|(near, other)| is_nearer(*near, other))
+                others().any(|(distance, other)| is_nearer(*distance, other))
             };
-            let nearest = others().map(|(near, _)| *near).min().unwrap_or(u64::MAX);
+            let nearest = others().map(|(distance, _)| *distance).min().unwrap_or(u64::MAX);
             let fit = Fit {
                 fits_another_motor,
                 has_one_level: !self.steps_at_both_levels(channel, motor.channel),
@@ -107,7 +112,8 @@ impl Draft<'_> {
                 distance: motor.channel.abs_diff(channel),
                 is_shared: motors.len() > 1 && own.saturating_mul(2) >= nearest,
             };
-            if !fit.changes_during_pulses || has_steps_between(&changes, &motor.edges, STEPS_BETWEEN_PERCENT)
+            if !fit.changes_during_pulses
+                || has_pulses_between(&changes, &motor.edges, PULSES_BETWEEN_PERCENT)
             {
                 candidates.push(Candidate { fit, channel, motor: motor.motor });
             }

@@ -64,7 +64,7 @@ impl<'a> Draft<'a> {
         // A duplicate of a named signal, such as a second EN, is not another signal.
         let may_be_any = |channel: &usize| match self.meanings.get(*channel) {
             Some(Meaning::Signal(named)) => match named.kind {
-                Kind::Rx | Kind::Tx => self.behavior(*channel).has_equal_pulses(),
+                Kind::Rx | Kind::Tx => self.behavior(*channel).has_uniform_pulses(),
                 Kind::Clock | Kind::Cw | Kind::Ccw | Kind::A | Kind::B => true,
                 Kind::Step | Kind::Dir | Kind::En | Kind::De => false,
             },

@@ -1,7 +1,10 @@
 //! Measures how close a channel's changes are to a motor's pulses.
 
+/// Maximum mean distance of changes to edges, in percent of the shortest pulse interval.
+const MAX_DISTANCE_PERCENT: u64 = 5;
+
 /// Sum of the times from each change to the nearest edge.
-pub(super) fn nearness(changes: &[u64], edges: &[u64]) -> u64 {
+pub(super) fn total_distance(changes: &[u64], edges: &[u64]) -> u64 {
     let distance = |tick: &u64| {
         let next = edges.partition_point(|edge| edge < tick);
         let to_next = edges.get(next).map_or(u64::MAX, |edge| edge - tick);
@@ -11,18 +14,21 @@ pub(super) fn nearness(changes: &[u64], edges: &[u64]) -> u64 {
     changes.iter().map(distance).fold(0, u64::saturating_add)
 }
 
-/// Whether the changes are far closer to pulses than the shortest pulse interval. A change in the middle of an
-/// interval may belong to any motor.
-pub(super) fn is_next_to(nearness: u64, changes: usize, edges: &[u64]) -> bool {
+/// Whether the mean distance is at most [`MAX_DISTANCE_PERCENT`]. A change in the middle of an interval may belong to any
+/// motor.
+pub(super) fn are_close_to_pulses(total_distance: u64, changes: usize, edges: &[u64]) -> bool {
+    // Every other edge: rise to rise.
     let intervals = edges.iter().zip(edges.iter().skip(2)).map(|(from, to)| to - from);
     let shortest = intervals.min().unwrap_or(0);
-    nearness.saturating_mul(20) <= shortest.saturating_mul(changes as u64)
+    let max_total = shortest.saturating_mul(changes as u64).saturating_mul(MAX_DISTANCE_PERCENT);
+    total_distance.saturating_mul(100) <= max_total
 }
 
-/// Whether at least `percent` of the times between two changes have a pulse.
-pub(super) fn has_steps_between(changes: &[u64], edges: &[u64], percent: usize) -> bool {
+/// Whether at least `percent` of the intervals between consecutive changes contain a whole pulse.
+pub(super) fn has_pulses_between(changes: &[u64], edges: &[u64], percent: usize) -> bool {
     let edges_until = |tick: &u64| edges.partition_point(|edge| edge <= tick);
     let pairs = changes.iter().zip(changes.iter().skip(1));
-    let with_steps = pairs.filter(|(from, to)| edges_until(to) > edges_until(from) + 1).count();
-    with_steps * 100 >= changes.len().saturating_sub(1) * percent
+    // Two edges: a rise and a fall.
+    let with_pulses = pairs.filter(|(from, to)| edges_until(to) > edges_until(from) + 1).count();
+    with_pulses * 100 >= changes.len().saturating_sub(1) * percent
 }

@@ -5,7 +5,7 @@ use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 const MAX_FIELDS: usize = 1024;
 /// The first of these in a line is its separator.
-const SEPARATORS: [u8; 4] = *b",;\t|";
+pub(super) const SEPARATORS: [u8; 4] = *b",;\t|";
 
 pub(super) struct Fields {
     /// Reused: building it takes longer than splitting a line.

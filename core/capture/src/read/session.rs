@@ -101,7 +101,7 @@ fn read_session<R: BufRead + Seek>(
             if count == 0 {
                 break;
             }
-            stream.take(buffer.get(..count).unwrap_or_default())?;
+            stream.feed(buffer.get(..count).unwrap_or_default())?;
         }
         stream.add_packed(packed.at.compressed_size_hint());
     }

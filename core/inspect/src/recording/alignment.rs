@@ -25,7 +25,7 @@
 use super::{drift::Drift, matching::Matching, tolerance::Tolerance};
 use serde::Serialize;
 
-pub use super::side::{ExactTimes, Side};
+pub use super::compared_data::{ExactTimes, Side};
 
 /// The deviation of a recorded step from its planned step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

@@ -1,6 +1,6 @@
 //! The differences of a recording from its plan; adjacent ones of a kind share a row.
 
-use super::{alignment::Alignment, side::Kind, tolerance::Tolerance};
+use super::{alignment::Alignment, compared_data::Kind, tolerance::Tolerance};
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 

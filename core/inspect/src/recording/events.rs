@@ -7,7 +7,7 @@ use serde::Serialize;
 use stepscope_peripheral::signal::{Levels, Record};
 use stepscope_peripheral::{trace::Step, trace::steps};
 
-pub use super::side::Kind;
+pub use super::compared_data::Kind;
 
 /// Steps or bytes with their times.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -21,7 +21,8 @@ pub struct StepFigures {
     pub shortest_at_s: Option<f64>,
     pub longest_interval_s: Option<f64>,
     /// `None` where two steps share a cycle.
-    pub greatest_rate_steps_s: Option<f64>,
+    #[serde(rename = "greatest_rate_steps_s")]
+    pub max_rate_steps_s: Option<f64>,
     pub mean_rate_steps_s: Option<f64>,
     /// Magnitude in steps/s^2 (over eight steps); 0 where rounding to cycles explains it.
     pub greatest_acceleration_steps_s2: Option<f64>,
@@ -73,7 +74,7 @@ impl StepFigures {
         found.shortest_interval_s = shortest.map(|(interval, _)| seconds(interval));
         found.shortest_at_s = shortest.map(|(_, at)| seconds(at));
         found.longest_interval_s = longest.map(seconds);
-        found.greatest_rate_steps_s =
+        found.max_rate_steps_s =
             shortest.filter(|(interval, _)| *interval > 0).map(|(interval, _)| hz / interval as f64);
         let span = last.cycle - first.cycle;
         found.mean_rate_steps_s = (span > 0).then(|| (found.steps - 1) as f64 / seconds(span));
@@ -136,7 +137,7 @@ mod tests {
         assert!((acceleration - 2000.0).abs() < 20.0, "{acceleration}");
         assert_eq!((found.position, found.turns, found.steps), (399, 0, 399));
         let one = StepFigures::of(steps.first().copied(), 16_000_000).expect("a step");
-        assert_eq!((one.greatest_rate_steps_s, one.mean_rate_steps_s), (None, None));
+        assert_eq!((one.max_rate_steps_s, one.mean_rate_steps_s), (None, None));
         assert_eq!(StepFigures::of([], 1), None);
     }
 
@@ -167,6 +168,6 @@ mod tests {
             [(10, 1), (20, 2), (30, 3), (40, 4), (60, 3)].map(|(cycle, position)| Step { cycle, position });
         let figures = StepFigures::of(steps, 1000).expect("there are steps");
         assert_eq!((figures.right, figures.left, figures.turns, figures.position), (4, 1, 1, 3));
-        assert_eq!(figures.greatest_rate_steps_s, Some(100.0));
+        assert_eq!(figures.max_rate_steps_s, Some(100.0));
     }
 }

@@ -15,7 +15,7 @@ mod costs;
 mod search;
 
 use self::search::Search;
-use super::side::Side;
+use super::compared_data::Side;
 use alloc::vec::Vec;
 
 /// Planned and recorded steps matched one by one.

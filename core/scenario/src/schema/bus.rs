@@ -79,20 +79,20 @@ fields! {
 words! {
     Distribution {
         /// the first slots of the tick (RU 2704486)
-        Burst = "burst", "burst at the start";
+        Burst = "burst" => label("burst at the start");
         /// evenly over the tick
-        Spread = "spread", "spread evenly";
+        Spread = "spread" => label("spread evenly");
     }
     DirLine {
         /// one per channel, changed at the start of a tick
-        PerChannel = "per_channel", "one per channel";
+        PerChannel = "per_channel" => label("one per channel");
         /// one for all, changed in each slot with a step
-        Common = "common", "one for all";
+        Common = "common" => label("one for all");
     }
     PulsePhasing {
         /// all at once
-        Simultaneous = "simultaneous", "all at once";
+        Simultaneous = "simultaneous" => label("all at once");
         /// one channel after another, so that current peaks do not coincide
-        Staggered = "staggered", "staggered";
+        Staggered = "staggered" => label("staggered");
     }
 }

@@ -27,17 +27,17 @@ word_enums! {
     /// A driver with a known data sheet.
     pub enum DriverModel {
         /// Allegro, data sheet 4988-DS
-        A4988 = "a4988", "A4988";
+        A4988 = "a4988" => label("A4988");
         /// Allegro; only STEP high is confirmed, the other times are those of the A4988
-        A4979 = "a4979", "A4979";
+        A4979 = "a4979" => label("A4979");
         /// Texas Instruments, data sheet SLVSA73
-        Drv8825 = "drv8825", "DRV8825";
+        Drv8825 = "drv8825" => label("DRV8825");
         /// Trinamic, data sheet rev. 1.09, at the minimum internal clock of 11.5 MHz
-        Tmc2209 = "tmc2209", "TMC2209";
+        Tmc2209 = "tmc2209" => label("TMC2209");
         /// Trinamic; unconfirmed: formula of the TMC2100 at 10 MHz
-        Tmc262 = "tmc262", "TMC262";
+        Tmc262 = "tmc262" => label("TMC262");
         /// opto-isolated, like TB6600, DM542, AM882: typical figures; check the data sheet of your driver
-        Tb6600Class = "tb6600_class", "TB6600 class";
+        Tb6600Class = "tb6600_class" => label("TB6600 class");
     }
 }
 

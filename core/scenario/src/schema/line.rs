@@ -52,9 +52,9 @@ settings! {
 words! {
     Protocol {
         /// bytes and pauses (RU 2704486), without checksum and reply
-        Raw = "raw", "raw";
+        Raw = "raw" => label("raw");
         /// each frame has a CRC and a sequence number, and is repeated until it is acknowledged
-        Framed = "framed", "framed";
+        Framed = "framed" => label("framed");
     }
 }
 

@@ -9,7 +9,7 @@
 //!
 //! | follows | where |
 //! | --- | --- |
-//! | reading and writing JSON ([`Read`](crate::Read), [`Compact`](crate::Compact)) | `rows`, the macros that declare rows |
+//! | reading and writing JSON ([`ReadJson`](crate::ReadJson), [`Compact`](crate::Compact)) | `rows`, the macros that declare rows |
 //! | the range check of single fields | `ranges` |
 //! | docs/scenario.md | [`markdown`] |
 //! | the page's form and help | [`describe`] |

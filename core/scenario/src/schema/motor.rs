@@ -126,18 +126,18 @@ fields! {
 words! {
     Regulator {
         /// average of an ideal chopper
-        Averaged = "averaged", "averaged";
+        Averaged = "averaged" => label("averaged");
         /// fixed off time, evaluated at grid points
-        Chopper = "chopper", "chopper";
+        Chopper = "chopper" => label("chopper");
     }
     Decay {
         /// the phase is short-circuited
-        Slow = "slow", "slow";
+        Slow = "slow" => label("slow");
         /// the supply opposes the current
-        Fast = "fast", "fast";
+        Fast = "fast" => label("fast");
         /// fast for the fast decay fraction of the off time, then slow
-        Mixed = "mixed", "mixed";
+        Mixed = "mixed" => label("mixed");
         /// mixed if the target fell at the last step, slow if it rose
-        Auto = "auto", "automatic";
+        Auto = "auto" => label("automatic");
     }
 }

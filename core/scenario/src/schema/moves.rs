@@ -286,44 +286,44 @@ fields! {
 words! {
     TrapezoidMethod {
         /// whole pulse rates, one per step, and whole timer reloads (Sonobe 2011)
-        Table = "table", "table and timer";
+        Table = "table" => label("table and timer");
         /// step k where the ideal curve crosses k - 1/2
-        Exact = "exact", "exact";
+        Exact = "exact" => label("exact");
     }
     ShortMove {
         /// run the whole move at the start speed (Zhang 2012)
-        Document = "at_start_speed", "at start speed";
+        Document = "at_start_speed" => label("at start speed");
         /// accelerate to the highest rate that fits, then decelerate
-        Reverse = "reverse", "accelerate and decelerate";
+        Reverse = "reverse" => label("accelerate and decelerate");
     }
     CosineMethod {
         /// step k where the ideal curve crosses k - 1/2
-        Exact = "exact", "exact";
+        Exact = "exact" => label("exact");
         /// whole steps per time slice, with the time error of Song 2021
-        Sliced = "sliced", "in slices";
+        Sliced = "sliced" => label("in slices");
     }
     RampShape {
         /// 1/(1 + e^-x), stretched from rest to full speed
-        Sigmoid = "sigmoid", "sigmoid";
+        Sigmoid = "sigmoid" => label("sigmoid");
         /// 3x^2 - 2x^3
-        Bezier = "bezier", "Bezier";
+        Bezier = "bezier" => label("Bezier");
         /// constant acceleration
-        Straight = "straight", "straight";
+        Straight = "straight" => label("straight");
         /// 1 - e^-x over the time constants
-        Exponential = "exponential", "exponential";
+        Exponential = "exponential" => label("exponential");
     }
     PointUnit {
         /// steps
-        Steps = "steps", "steps";
+        Steps = "steps" => label("steps");
         /// millimeters
-        Millimeters = "mm", "mm";
+        Millimeters = "mm" => label("mm");
         /// degrees
-        Degrees = "deg", "°";
+        Degrees = "deg" => label("°");
     }
     Interpolation {
         /// lines between points
-        Straight = "straight", "straight";
+        Straight = "straight" => label("straight");
         /// smooth, from rest to rest
-        Smooth = "smooth", "smooth";
+        Smooth = "smooth" => label("smooth");
     }
 }

@@ -72,8 +72,8 @@ macro_rules! rows {
             }
         }
 
-        impl $crate::Read for $name {
-            fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::Reader) -> bool {
+        impl $crate::ReadJson for $name {
+            fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::JsonReader) -> bool {
                 reader.fields(value, $crate::schema::rows::group::<Self>(), &mut [$(&mut self.$field),*])
             }
 
@@ -121,7 +121,7 @@ macro_rules! kinds {
                     fields: KINDS,
                     is_choice: true,
                     is_external: false,
-                    blank: || alloc::boxed::Box::new(<$name as $crate::Read>::blank()),
+                    blank: || alloc::boxed::Box::new(<$name as $crate::ReadJson>::blank()),
                 };
                 $crate::schema::Type::Group(GROUP)
             };
@@ -135,13 +135,13 @@ macro_rules! kinds {
             }
         }
 
-        impl $crate::Read for $name {
-            fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::Reader) -> bool {
+        impl $crate::ReadJson for $name {
+            fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::JsonReader) -> bool {
                 let kinds = $crate::schema::rows::group::<Self>();
                 let Some((kind, content)) = reader.choice(value, kinds) else { return false };
                 match kind.name {
                     $($key => {
-                        let mut inner = <$ty as $crate::Read>::blank();
+                        let mut inner = <$ty as $crate::ReadJson>::blank();
                         let is_read = reader.read_field(Some(kind), kind.name, content, &mut inner);
                         if is_read {
                             *self = Self::$variant(inner);
@@ -162,7 +162,7 @@ macro_rules! kinds {
 
 macro_rules! last {
     ($variant:ident($ty:ty)) => {
-        Self::$variant(<$ty as $crate::Read>::blank())
+        Self::$variant(<$ty as $crate::ReadJson>::blank())
     };
     ($variant:ident($ty:ty), $($rest:tt)+) => {
         $crate::schema::rows::last!($($rest)+)
@@ -171,7 +171,7 @@ macro_rules! last {
 
 /// Words for an enum's variants, with labels for the form.
 macro_rules! words {
-    ($($ty:ty { $($(#[doc = $doc:literal])* $variant:ident = $word:literal, $label:literal;)* })*) => {$(
+    ($($ty:ty { $($(#[doc = $doc:literal])* $variant:ident = $word:literal => label($label:literal);)* })*) => {$(
         impl $crate::schema::Typed for $ty {
             const TYPE: $crate::schema::Type = {
                 const WORDS: &[$crate::schema::Word] =
@@ -188,8 +188,8 @@ macro_rules! words {
             }
         }
 
-        impl $crate::Read for $ty {
-            fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::Reader) -> bool {
+        impl $crate::ReadJson for $ty {
+            fn read(&mut self, value: $crate::Json<'_>, reader: &mut $crate::JsonReader) -> bool {
                 let found = reader.word(value, &[$($word),*]);
                 let kinds = [$(Self::$variant),*];
                 let found = found.and_then(|index| kinds.into_iter().nth(index));
@@ -208,7 +208,7 @@ macro_rules! words {
 /// The same for an enum of the scenario.
 macro_rules! word_enums {
     ($($(#[doc = $doc:literal])* pub enum $name:ident {
-        $($(#[doc = $word_doc:literal])* $variant:ident = $word:literal, $label:literal;)*
+        $($(#[doc = $word_doc:literal])* $variant:ident = $word:literal => label($label:literal);)*
     })*) => {$(
         $(#[doc = $doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -217,7 +217,7 @@ macro_rules! word_enums {
         }
 
         $crate::schema::rows::words! { $name {
-            $($(#[doc = $word_doc])* $variant = $word, $label;)*
+            $($(#[doc = $word_doc])* $variant = $word => label($label);)*
         } }
     )*};
 }

@@ -19,7 +19,7 @@ choices! {
         /// Bytes at given cycles, for example to replay a recording.
         Line(LineScript) = "line" => label("Line script").from(OWN),
         /// Controllers with buttons, a program and a memory. Nothing is sent.
-        Standalone(Vec<StandAlone>) = "standalone" => label("Stand-alone controller").from(ZHANG),
+        StandAlone(Vec<StandAlone>) = "standalone" => label("Stand-alone controller").from(ZHANG),
         /// Tables of intervals that the controller runs. Nothing is sent.
         Segments(SegmentLists) = "segments" => label("Lists of segments").from(SONOBE),
     }
@@ -32,12 +32,12 @@ impl Default for Source {
 }
 
 settings! {
-    /// Axis i drives channel i. With `"ticks"` the host sends one packet per tick, so that ticks follow without a pause. On
-    /// an addressed line each packet begins with `line.address`. There are at most 2 000 000 ticks.
+    /// Axis i drives channel i. With `"ticks"` the host sends one packet per tick, back to back in time. On an addressed
+    /// line each packet begins with `line.address`. There are at most 2 000 000 ticks.
     ///
     /// With `"segments"` nothing is sent: the peripheral runs a list of segments, each step at cycle 1 +
-    /// floor(t*`clock_hz` + 1/2). All axes together then have at most 4 000 000 steps, and the interval before each step
-    /// is at least W + max(H + D, 1) cycles. A motion lasts at most 10^6 s.
+    /// floor(t*`clock_hz` + 1/2). All axes together then have at most 4 000 000 steps. The interval before each step is at
+    /// least the pulse width plus the larger of 1 and hold + set-up time, in cycles. A motion lasts at most 10^6 s.
     pub struct Motion {
         /// Axes, each with its mechanics and moves.
         pub axes: Vec<Axis> = vec![Axis::default()] => label("Axes").range_text("1 to 16, no more than `bus.channels`"),
@@ -61,9 +61,9 @@ pub enum MotionEngine {
 words! {
     MotionEngine {
         /// the host sends the number of steps of each tick
-        Ticks = "ticks", "ticks";
+        Ticks = "ticks" => label("ticks");
         /// nothing is sent; each step comes in its exact cycle
-        Segments = "segments", "segments";
+        Segments = "segments" => label("segments");
     }
 }
 
@@ -88,7 +88,7 @@ settings! {
 }
 
 settings! {
-    /// Bytes sent without pauses from a cycle on, or a frame.
+    /// Bytes, or one frame, sent from `start_cycle` on without pauses.
     pub struct ScriptedSend {
         /// Cycle of the first start bit.
         pub start_cycle: u64 = 1 => label("Start")
@@ -110,22 +110,22 @@ settings! {
 }
 
 impl Source {
-    /// Whether the host sends ticks.
-    pub const fn is_ticks(&self) -> bool {
-        !matches!(self, Self::Line(_)) && !self.runs_alone()
+    /// Whether the host sends packets of ticks.
+    pub const fn sends_ticks(&self) -> bool {
+        !matches!(self, Self::Line(_)) && !self.sends_nothing()
     }
 
     /// Whether segments run it instead of ticks.
-    pub const fn runs_segments(&self) -> bool {
+    pub const fn uses_segments(&self) -> bool {
         matches!(self, Self::Segments(_) | Self::Motion(Motion { engine: MotionEngine::Segments, .. }))
     }
 
     /// Whether nothing is sent: segments or stand-alone controllers run it.
-    pub const fn runs_alone(&self) -> bool {
-        if let Self::Standalone(_) = self {
+    pub const fn sends_nothing(&self) -> bool {
+        if let Self::StandAlone(_) = self {
             return true;
         }
-        self.runs_segments()
+        self.uses_segments()
     }
 }
 
@@ -134,7 +134,7 @@ impl LineScript {
     pub fn schedule(&self) -> Schedule {
         let mut schedule = Schedule::default();
         for send in &self.sends {
-            schedule.push(Instant(send.start_cycle), &send.wire());
+            schedule.push(Instant(send.start_cycle), &send.line_bytes());
         }
         schedule
     }
@@ -142,7 +142,7 @@ impl LineScript {
 
 impl ScriptedSend {
     /// The bytes on the line.
-    pub fn wire(&self) -> Vec<u8> {
+    pub fn line_bytes(&self) -> Vec<u8> {
         self.frame.as_ref().map_or_else(|| self.bytes.0.clone(), |Hex(content)| encode_frame(content))
     }
 }

@@ -95,127 +95,127 @@ word_enums! {
     /// The direction of a move or a step.
     pub enum Direction {
         /// left: DIR is low, positions fall
-        Negative = "negative", "left (negative)";
+        Negative = "negative" => label("left (negative)");
         /// right: DIR is high, positions rise
-        Positive = "positive", "right (positive)";
+        Positive = "positive" => label("right (positive)");
     }
     /// How reliable the position of a controller is, in ascending order.
     pub enum PositionState {
         /// any position, also a lost one
-        Lost = "lost", "lost (any)";
+        Lost = "lost" => label("lost (any)");
         /// restored from memory, or confirmed
-        Restored = "restored", "restored";
+        Restored = "restored" => label("restored");
         /// zero was set or found while the windings had current
-        Confirmed = "confirmed", "confirmed";
+        Confirmed = "confirmed" => label("confirmed");
     }
     /// A switch for homing.
     pub enum Switch {
         /// left limit switch
-        LimitMin = "limit_min", "left limit switch";
+        LimitMin = "limit_min" => label("left limit switch");
         /// right limit switch
-        LimitMax = "limit_max", "right limit switch";
+        LimitMax = "limit_max" => label("right limit switch");
         /// home switch
-        HomeSwitch = "home_switch", "home switch";
+        HomeSwitch = "home_switch" => label("home switch");
     }
     /// A switch or an input that a program can test.
     pub enum Sensor {
         /// left limit switch
-        LimitMin = "limit_min", "left limit switch";
+        LimitMin = "limit_min" => label("left limit switch");
         /// right limit switch
-        LimitMax = "limit_max", "right limit switch";
+        LimitMax = "limit_max" => label("right limit switch");
         /// home switch
-        HomeSwitch = "home_switch", "home switch";
+        HomeSwitch = "home_switch" => label("home switch");
         /// input 0
-        In0 = "in_0", "in_0";
+        In0 = "in_0" => label("in_0");
         /// input 1
-        In1 = "in_1", "in_1";
+        In1 = "in_1" => label("in_1");
         /// input 2
-        In2 = "in_2", "in_2";
+        In2 = "in_2" => label("in_2");
         /// input 3
-        In3 = "in_3", "in_3";
+        In3 = "in_3" => label("in_3");
     }
 }
 
 words! {
     ShortMove {
         /// run the whole move at the start-stop rate
-        Document = "at_start_speed", "start-stop rate";
+        Document = "at_start_speed" => label("start-stop rate");
         /// accelerate to the highest rate that fits, then decelerate
-        TurnRound = "reverse", "accelerate and decelerate";
+        TurnRound = "reverse" => label("accelerate and decelerate");
     }
     Release {
         /// stops at once (Zhang 2012)
-        AtOnce = "at_once", "at once";
+        AtOnce = "at_once" => label("at once");
         /// decelerates by the table
-        Ramp = "ramp", "by a ramp";
+        Ramp = "ramp" => label("by a ramp");
     }
     Policy {
         /// the closing record is written during the hold-up time
-        PowerLoss = "power_loss", "when power fails";
+        PowerLoss = "power_loss" => label("when power fails");
         /// one record before each move and one after it; no hold-up is needed
-        WriteAhead = "write_ahead", "before each move";
+        WriteAhead = "write_ahead" => label("before each move");
     }
     Signal {
         /// supply; 1 before the first entry
-        Power = "power", "power";
+        Power = "power" => label("power");
         /// emergency stop
-        Estop = "estop", "estop";
+        Estop = "estop" => label("estop");
         /// starts the program, or continues after a pause
-        Start = "start", "start";
+        Start = "start" => label("start");
         /// pauses a move or a delay
-        Pause = "pause", "pause";
+        Pause = "pause" => label("pause");
         /// jogs right while held
-        JogPlus = "jog_plus", "jog_plus";
+        JogPlus = "jog_plus" => label("jog_plus");
         /// jogs left while held
-        JogMinus = "jog_minus", "jog_minus";
+        JogMinus = "jog_minus" => label("jog_minus");
         /// returns to zero
-        Zero = "zero", "zero";
+        Zero = "zero" => label("zero");
         /// starts homing
-        Home = "home", "home";
+        Home = "home" => label("home");
         /// fine jog and setting of zero
-        Debug = "debug", "debug";
+        Debug = "debug" => label("debug");
         /// opens the numbers
-        System = "system", "system";
+        System = "system" => label("system");
         /// confirms the entry; in fine jog sets the zero
-        Ok = "ok", "ok";
+        Ok = "ok" => label("ok");
         /// leaves the numbers
-        Back = "back", "back";
+        Back = "back" => label("back");
         /// clears an alarm, a pause or an entry
-        Clear = "clear", "clear";
+        Clear = "clear" => label("clear");
         /// digit 0
-        Key0 = "key_0", "key_0";
+        Key0 = "key_0" => label("key_0");
         /// digit 1
-        Key1 = "key_1", "key_1";
+        Key1 = "key_1" => label("key_1");
         /// digit 2
-        Key2 = "key_2", "key_2";
+        Key2 = "key_2" => label("key_2");
         /// digit 3
-        Key3 = "key_3", "key_3";
+        Key3 = "key_3" => label("key_3");
         /// digit 4
-        Key4 = "key_4", "key_4";
+        Key4 = "key_4" => label("key_4");
         /// digit 5
-        Key5 = "key_5", "key_5";
+        Key5 = "key_5" => label("key_5");
         /// digit 6
-        Key6 = "key_6", "key_6";
+        Key6 = "key_6" => label("key_6");
         /// digit 7
-        Key7 = "key_7", "key_7";
+        Key7 = "key_7" => label("key_7");
         /// digit 8
-        Key8 = "key_8", "key_8";
+        Key8 = "key_8" => label("key_8");
         /// digit 9
-        Key9 = "key_9", "key_9";
+        Key9 = "key_9" => label("key_9");
         /// left limit switch
-        LimitMin = "limit_min", "left limit switch";
+        LimitMin = "limit_min" => label("left limit switch");
         /// right limit switch
-        LimitMax = "limit_max", "right limit switch";
+        LimitMax = "limit_max" => label("right limit switch");
         /// home switch
-        HomeSwitch = "home_switch", "home switch";
+        HomeSwitch = "home_switch" => label("home switch");
         /// input 0
-        In0 = "in_0", "in_0";
+        In0 = "in_0" => label("in_0");
         /// input 1
-        In1 = "in_1", "in_1";
+        In1 = "in_1" => label("in_1");
         /// input 2
-        In2 = "in_2", "in_2";
+        In2 = "in_2" => label("in_2");
         /// input 3
-        In3 = "in_3", "in_3";
+        In3 = "in_3" => label("in_3");
     }
 }
 

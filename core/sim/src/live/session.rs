@@ -95,10 +95,10 @@ pub struct Session {
 
 fn blank(scenario: &Scenario) -> Scenario {
     let mut blank = match &scenario.source {
-        Source::Standalone(_) => scenario.clone(),
+        Source::StandAlone(_) => scenario.clone(),
         _ => replayed(scenario.clone(), LineScript::default()),
     };
-    if let Source::Standalone(controllers) = &mut blank.source {
+    if let Source::StandAlone(controllers) = &mut blank.source {
         controllers.iter_mut().for_each(|controller| controller.inputs = Vec::new());
     }
     blank.line.host = Host::default();
@@ -111,7 +111,7 @@ impl Session {
     /// Starts the controllers of a scenario and ignores its sends, presses, length, host and noise. Errors: every problem, and
     /// segments, which have no line.
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
-        if scenario.source.runs_segments() {
+        if scenario.source.uses_segments() {
             let detail = "segments run without a serial line; use ticks, packets or a line script";
             return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
         }
@@ -344,12 +344,12 @@ impl Session {
     }
 
     fn source_to_now(&self) -> Source {
-        if let Source::Standalone(controllers) = &self.blank.source {
+        if let Source::StandAlone(controllers) = &self.blank.source {
             let mut controllers = controllers.clone();
             for (index, controller) in controllers.iter_mut().enumerate() {
                 controller.inputs = self.presses.script(index, self.now());
             }
-            return Source::Standalone(controllers);
+            return Source::StandAlone(controllers);
         }
         let sends = self.run.schedule().iter().map(|send| ScriptedSend {
             start_cycle: send.start.0,

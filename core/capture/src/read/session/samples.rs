@@ -4,68 +4,74 @@ use super::metadata::Metadata;
 use crate::read::recorder::{Recorder, grouped};
 use crate::read::{reading::ReadError, selection::select, source::WATCH_EVERY};
 
-/// sigrok has no device with more than 512 channels.
-const MAX_UNIT: usize = 64;
-/// Samples per allowed change, which also bounds the time for samples without changes.
-const MAX_IDLE: u64 = 10_000;
+/// Bytes per sample: sigrok has at most 512 channels.
+const MAX_SAMPLE_BYTES: usize = 64;
+/// A file may have this many samples per allowed row. This limits the reading time of idle signals.
+const SAMPLES_PER_ROW: u64 = 10_000;
 
 pub(super) struct SampleStream<'a> {
     recorder: &'a mut Recorder,
-    watch: &'a mut dyn FnMut(u64) -> bool,
+    /// Receives the packed bytes so far; false cancels.
+    progress: &'a mut dyn FnMut(u64) -> bool,
     sample_size: usize,
-    bits: Vec<(usize, u8)>,
+    selected: Vec<Selected>,
     last: Vec<u8>,
     partial: Vec<u8>,
     samples: u64,
     max_samples: u64,
-    /// Packed bytes, and unpacked bytes since the last call of `watch`.
-    packed: u64,
-    unreported: u64,
+    packed_bytes: u64,
+    /// Unpacked bytes since the last call of `progress`.
+    unreported_bytes: u64,
+}
+
+/// A bit of each sample that is read.
+struct Selected {
+    bit: usize,
+    /// Channel of the capture.
+    channel: u8,
 }
 
 impl<'a> SampleStream<'a> {
     pub(super) fn new(
         metadata: &Metadata,
         recorder: &'a mut Recorder,
-        watch: &'a mut dyn FnMut(u64) -> bool,
+        progress: &'a mut dyn FnMut(u64) -> bool,
     ) -> Result<Self, String> {
-        let unit = metadata.unitsize;
-        if !(1..=MAX_UNIT).contains(&unit) {
-            return Err(format!("unitsize: {unit} is out of range; use 1 to {MAX_UNIT}"));
+        let sample_size = metadata.unitsize;
+        if !(1..=MAX_SAMPLE_BYTES).contains(&sample_size) {
+            return Err(format!("unitsize: {sample_size} is out of range; use 1 to {MAX_SAMPLE_BYTES}"));
         }
-        let mut bits = Vec::new();
         for (bit, name) in &metadata.probes {
-            if *bit >= 8 * unit {
+            if *bit >= 8 * sample_size {
                 return Err(format!(
                     "{name} is bit {bit}, but samples have {} bits; save the session again",
-                    8 * unit
+                    8 * sample_size
                 ));
             }
         }
         let channels = select(metadata.probes.iter().map(|(_, name)| name.as_str()), recorder);
-        for ((bit, _), channel) in metadata.probes.iter().zip(channels) {
-            bits.extend(channel.map(|channel| (*bit, channel)));
-        }
-        if bits.is_empty() {
+        let bits = metadata.probes.iter().map(|(bit, _)| *bit).zip(channels);
+        let selected: Vec<Selected> =
+            bits.filter_map(|(bit, channel)| channel.map(|channel| Selected { bit, channel })).collect();
+        if selected.is_empty() {
             return Err("the session has no logic channels; record STEP and DIR as logic channels".into());
         }
-        let max_samples = (recorder.max_rows() as u64).saturating_mul(MAX_IDLE);
-        let (last, partial) = (Vec::new(), Vec::new());
+        let max_samples = (recorder.max_rows() as u64).saturating_mul(SAMPLES_PER_ROW);
         Ok(Self {
             recorder,
-            watch,
-            sample_size: unit,
-            bits,
-            last,
-            partial,
+            progress,
+            sample_size,
+            selected,
+            last: Vec::new(),
+            partial: Vec::new(),
             samples: 0,
             max_samples,
-            packed: 0,
-            unreported: 0,
+            packed_bytes: 0,
+            unreported_bytes: 0,
         })
     }
 
-    pub(super) fn take(&mut self, bytes: &[u8]) -> Result<(), String> {
+    pub(super) fn feed(&mut self, bytes: &[u8]) -> Result<(), String> {
         let mut rest = bytes;
         if !self.partial.is_empty() {
             let (missing, after) = rest.split_at(rest.len().min(self.sample_size - self.partial.len()));
@@ -73,32 +79,23 @@ impl<'a> SampleStream<'a> {
             rest = after;
             if self.partial.len() == self.sample_size {
                 let sample = core::mem::take(&mut self.partial);
-                self.run(&sample)?;
+                self.process(&sample)?;
             }
         }
         let whole = rest.len() - rest.len() % self.sample_size;
         let (samples, partial) = rest.split_at(whole);
-        self.run(samples)?;
+        self.process(samples)?;
         self.partial.extend_from_slice(partial);
         self.report_progress(bytes.len() as u64)
     }
 
-    fn run(&mut self, samples: &[u8]) -> Result<(), String> {
-        let unit = self.sample_size;
+    fn process(&mut self, samples: &[u8]) -> Result<(), String> {
         let mut rest = samples;
         while !rest.is_empty() {
-            let same = match (self.last.as_slice(), unit) {
-                ([], _) => 0,
-                (&[last], 1) => rest.iter().position(|sample| *sample != last).unwrap_or(rest.len()),
-                (last, _) => {
-                    let units = rest.chunks_exact(unit);
-                    let count = units.len();
-                    units.enumerate().find(|(_, sample)| *sample != last).map_or(count, |(at, _)| at)
-                }
-            };
-            self.samples += same as u64;
-            rest = rest.get(same * unit..).unwrap_or_default();
-            let Some((sample, after)) = rest.split_at_checked(unit) else { break };
+            let unchanged = self.count_unchanged(rest);
+            self.samples += unchanged as u64;
+            rest = rest.get(unchanged * self.sample_size..).unwrap_or_default();
+            let Some((sample, after)) = rest.split_at_checked(self.sample_size) else { break };
             self.last.clear();
             self.last.extend_from_slice(sample);
             self.recorder.levels(self.samples, self.levels())?;
@@ -112,22 +109,36 @@ impl<'a> SampleStream<'a> {
         Ok(())
     }
 
-    fn levels(&self) -> u64 {
-        let high = |bit: usize| self.last.get(bit / 8).is_some_and(|byte| byte >> (bit % 8) & 1 == 1);
-        self.bits.iter().fold(0, |levels, (bit, channel)| levels | u64::from(high(*bit)) << channel)
+    /// Number of samples at the start that are equal to the last one.
+    fn count_unchanged(&self, samples: &[u8]) -> usize {
+        match self.last.as_slice() {
+            [] => 0,
+            // Fast path: one byte per sample.
+            &[last] => samples.iter().position(|sample| *sample != last).unwrap_or(samples.len()),
+            last => {
+                let mut samples = samples.chunks_exact(self.sample_size);
+                let count = samples.len();
+                samples.position(|sample| sample != last).unwrap_or(count)
+            }
+        }
     }
 
-    pub(super) const fn add_packed(&mut self, packed: u64) {
-        self.packed += packed;
+    fn levels(&self) -> u64 {
+        let high = |bit: usize| self.last.get(bit / 8).is_some_and(|byte| byte >> (bit % 8) & 1 == 1);
+        self.selected.iter().fold(0, |levels, each| levels | (u64::from(high(each.bit)) << each.channel))
+    }
+
+    pub(super) const fn add_packed(&mut self, packed_bytes: u64) {
+        self.packed_bytes += packed_bytes;
     }
 
     fn report_progress(&mut self, bytes: u64) -> Result<(), String> {
-        self.unreported += bytes;
-        if self.unreported < WATCH_EVERY {
+        self.unreported_bytes += bytes;
+        if self.unreported_bytes < WATCH_EVERY {
             return Ok(());
         }
-        self.unreported = 0;
-        if (self.watch)(self.packed) { Ok(()) } else { Err(ReadError::CANCELLED.into()) }
+        self.unreported_bytes = 0;
+        if (self.progress)(self.packed_bytes) { Ok(()) } else { Err(ReadError::CANCELLED.into()) }
     }
 
     pub(super) fn finish(self) -> Result<(), String> {

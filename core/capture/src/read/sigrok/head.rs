@@ -1,7 +1,7 @@
 //! Reads the lines before the samples: comments, output of sigrok-cli, and labels.
 
 use crate::read::decimal::{Decimal, power_of_ten, whole};
-use crate::read::fields::{Fields, separator};
+use crate::read::fields::{Fields, SEPARATORS, separator};
 use crate::read::sample_rate::{SampleRate, period};
 use crate::read::times::TimeUnit;
 use crate::timebase::Timebase;
@@ -16,31 +16,36 @@ pub(in crate::read) struct Head {
     separator: Option<u8>,
 }
 
-pub(super) enum Kind {
+pub(super) enum ColumnKind {
     Time,
     Trigger,
     Level(String),
     Analog(String),
 }
 
+/// How a row's sample is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RowClock {
+    /// Each row is one sample.
     Count,
-    /// The time in units of 1/`units` s, of which a sample has `period`.
-    Period {
-        period: u64,
-        units: u64,
+    /// Times are in 1/`units_per_s` s; each sample lasts `units_per_sample` of them, rounded down.
+    FixedPeriod {
+        units_per_s: u64,
+        units_per_sample: u64,
     },
-    /// The last sample that is not later than the time: for times that are truncated one by one.
-    Nearest {
-        units: u64,
+    /// Each time was rounded down on its own, so the sample is the first one not earlier than it.
+    TruncatedTime {
+        units_per_s: u64,
     },
     Time,
 }
 
+/// A row may also be separated by `:` or spaces, which labels may contain.
+const ROW_SEPARATORS: [u8; 6] = *b",;\t|: ";
+
 impl Head {
-    /// Returns false for a row of samples.
-    pub(super) fn take(&mut self, line: &[u8]) -> Result<bool, String> {
+    /// Reads a line of the head. Returns false if the line is the first row of samples instead.
+    pub(super) fn read_line(&mut self, line: &[u8]) -> Result<bool, String> {
         let text = String::from_utf8_lossy(line);
         if is_comment(line) {
             let text = text.trim_start_matches(|letter: char| letter.is_ascii_punctuation() || letter == ' ');
@@ -58,7 +63,8 @@ impl Head {
         if !self.labels.is_empty() || is_row(line) {
             return Ok(false);
         }
-        let separator = if line.iter().any(|byte| b",;\t|".contains(byte)) { separator(line) } else { b' ' };
+        let separator =
+            if line.iter().any(|byte| SEPARATORS.contains(byte)) { separator(line) } else { b' ' };
         let mut fields = Fields::new();
         fields.split(line, separator)?;
         self.labels = fields.names();
@@ -67,53 +73,57 @@ impl Head {
     }
 
     pub(super) fn separator(&self, row: &[u8]) -> u8 {
-        let own = row.iter().find(|byte| b",;\t|: ".contains(byte)).copied();
+        let own = row.iter().find(|byte| ROW_SEPARATORS.contains(byte)).copied();
         self.separator.filter(|separator| row.contains(separator)).or(own).unwrap_or(b',')
     }
 
-    pub(super) fn columns(&self, row: &Fields) -> Vec<Kind> {
-        let label = |at: usize| self.labels.get(at).map(String::as_str);
-        let units = self.labels.iter().any(|label| label == "logic");
+    pub(super) fn columns(&self, row: &Fields) -> Vec<ColumnKind> {
+        let first_channel = usize::from(self.has_time_column(row));
+        (0..row.len()).map(|at| self.column_kind(at, first_channel, row)).collect()
+    }
+
+    fn label(&self, at: usize) -> Option<&str> {
+        self.labels.get(at).map(String::as_str)
+    }
+
+    fn has_time_column(&self, row: &Fields) -> bool {
         let (count, named) = (row.len(), self.names.len());
-        let is_level = |at: usize| matches!(row.get(at), b"0" | b"1");
-        let first_is_time = match label(0) {
+        match self.label(0) {
             Some("samples") => true,
             Some(label) => TimeUnit::of_column(label).is_some() && count != named,
-            None => named > 0 && count > named || named == 0 && count > 1 && !is_level(0),
-        };
-        let start = usize::from(first_is_time);
-        let channel = |at: usize| {
-            let name = self.names.get(at - start).cloned();
-            let name = name.or_else(|| label(at).filter(|_| !units).map(Into::into));
-            name.unwrap_or_else(|| format!("D{}", at - start))
-        };
-        let kind = |at: usize| {
-            if at < start {
-                Kind::Time
-            } else if at + 1 == count && (label(at) == Some("Trigger") || named > 0 && at - start >= named) {
-                Kind::Trigger
-            } else if units && label(at) != Some("logic") || !is_level(at) {
-                Kind::Analog(channel(at))
-            } else {
-                Kind::Level(channel(at))
-            }
-        };
-        (0..count).map(kind).collect()
+            None if named > 0 => count > named,
+            None => count > 1 && !is_level(row.get(0)),
+        }
+    }
+
+    fn column_kind(&self, at: usize, first_channel: usize, row: &Fields) -> ColumnKind {
+        let Some(channel) = at.checked_sub(first_channel) else { return ColumnKind::Time };
+        let (label, named) = (self.label(at), self.names.len());
+        let has_no_name = named > 0 && channel >= named;
+        if at + 1 == row.len() && (label == Some("Trigger") || has_no_name) {
+            return ColumnKind::Trigger;
+        }
+        // The label row of sigrok's CSV has types (`logic`, `V DC`) instead of names.
+        let labels_are_kinds = self.labels.iter().any(|label| label == "logic");
+        let name = self.names.get(channel).map(String::as_str).or(label.filter(|_| !labels_are_kinds));
+        let name = name.map_or_else(|| format!("D{channel}"), Into::into);
+        let is_analog = labels_are_kinds && label != Some("logic") || !is_level(row.get(at));
+        if is_analog { ColumnKind::Analog(name) } else { ColumnKind::Level(name) }
     }
 
     pub(super) fn clock(&self) -> RowClock {
-        // sigrok writes this if it did not know the rate; all times are then 0.
-        if self.labels.first().is_some_and(|label| label == "samples") {
+        // The label `samples`: sigrok did not know the rate, and all times are 0.
+        if self.label(0) == Some("samples") {
             return RowClock::Count;
         }
         if let Some(rate_hz) = self.rate_hz() {
             // sigrok uses the first of these units in which a sample lasts at least 1.
             let units = [0, 3, 6, 9, 12].map(|places| 10_u64.pow(places));
-            if let Some(units) = units.into_iter().find(|units| *units >= rate_hz) {
-                return RowClock::Period { period: units / rate_hz, units };
+            if let Some(units_per_s) = units.into_iter().find(|units_per_s| *units_per_s >= rate_hz) {
+                return RowClock::FixedPeriod { units_per_s, units_per_sample: units_per_s / rate_hz };
             }
         }
-        match self.labels.first().and_then(|label| TimeUnit::of_column(label)) {
+        match self.label(0).and_then(TimeUnit::of_column) {
             Some(TimeUnit::Seconds(_)) => RowClock::Time,
             _ => RowClock::Count,
         }
@@ -126,8 +136,7 @@ impl Head {
     pub(super) fn timebase(&self, clock: RowClock) -> Option<Timebase> {
         let unit = |places: u32| u64::try_from(power_of_ten(places)?).ok();
         if clock == RowClock::Time {
-            let label = self.labels.first().and_then(|label| TimeUnit::of_column(label));
-            return match label {
+            return match self.label(0).and_then(TimeUnit::of_column) {
                 Some(TimeUnit::Seconds(places)) => Timebase::new(1, unit(places)?),
                 _ => None,
             };
@@ -154,7 +163,11 @@ fn is_analog_value(line: &[u8]) -> bool {
         && words.next().is_some()
 }
 
+fn is_level(field: &[u8]) -> bool {
+    matches!(field, b"0" | b"1")
+}
+
 fn is_row(line: &[u8]) -> bool {
-    let end = line.iter().position(|byte| b",;\t|: ".contains(byte)).unwrap_or(line.len());
+    let end = line.iter().position(|byte| ROW_SEPARATORS.contains(byte)).unwrap_or(line.len());
     line.get(..end).is_some_and(|first| whole(first).is_some() || Decimal::parse(first).is_some())
 }

@@ -2,7 +2,7 @@
 
 use super::clock::Clock;
 use super::costs::{AGAIN, BYTES, CLEAN, Costs, LATE, STEPS, gap};
-use crate::recording::side::Side;
+use crate::recording::compared_data::Side;
 use alloc::{rc::Rc, vec, vec::Vec};
 
 pub(super) type Pair = (usize, usize);

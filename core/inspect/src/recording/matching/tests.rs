@@ -1,5 +1,5 @@
 use super::*;
-use crate::recording::noise::Noise;
+use crate::recording::test_random::Noise;
 use alloc::{format, string::String};
 use stepscope_peripheral::trace::Step;
 

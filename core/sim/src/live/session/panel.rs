@@ -126,7 +126,7 @@ mod tests {
 
     /// Cycle, input and level of what is recorded.
     fn recorded(session: &Session) -> Vec<(u64, &'static str, u8)> {
-        let Source::Standalone(controllers) = session.recording().scenario.source else { return Vec::new() };
+        let Source::StandAlone(controllers) = session.recording().scenario.source else { return Vec::new() };
         let inputs = controllers.into_iter().flat_map(|controller| controller.inputs);
         inputs.map(|input| (input.cycle, input.input.map_or("push", Signal::name), input.level)).collect()
     }
@@ -207,7 +207,7 @@ mod tests {
     fn random_presses_are_replayed_exactly() {
         let mut two = Scenario::from_json(QUICK).expect("reads");
         two.bus.channels = 2;
-        if let Source::Standalone(controllers) = &mut two.source {
+        if let Source::StandAlone(controllers) = &mut two.source {
             controllers.push(controllers[0].clone());
             controllers[1].axis = None;
             controllers[1].debounce_cycles = 30;
@@ -288,7 +288,7 @@ mod tests {
         let mut recording = session.recording();
         recording.verify().expect("the same");
         // The bus shows no difference.
-        let Source::Standalone(controllers) = &mut recording.scenario.source else { panic!("it is") };
+        let Source::StandAlone(controllers) = &mut recording.scenario.source else { panic!("it is") };
         controllers[0].inputs.clear();
         assert_eq!(recording.verify(), Err(NotTheSession::PanelsDiffer));
     }

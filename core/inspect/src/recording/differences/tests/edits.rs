@@ -2,7 +2,7 @@
 
 use crate::recording::alignment::Side;
 use crate::recording::differences::*;
-use crate::recording::noise::Noise;
+use crate::recording::test_random::Noise;
 use alloc::{format, string::String, vec, vec::Vec};
 use stepscope_peripheral::trace::Step;
 
