@@ -272,8 +272,8 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
 
 const MAX_SAMPLES: u64 = 10_000_000;
 const MAX_STEPS: u64 = 10_000_000;
-/// Maximum motor steps of a map (PLANT F1), and seconds per rate.
-const MAX_MOTOR_STEPS: f64 = 1e10;
+/// Maximum grid steps of all motors of a map (PLANT F1), and seconds per rate.
+const MAX_MOTOR_GRID_STEPS: f64 = 1e10;
 const RATE_S: f64 = 0.6;
 
 pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
@@ -293,10 +293,10 @@ pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let points = |SingleMotor { setup, .. }: &SingleMotor| {
         RATE_S * f64::from(setup.clock_hz) / f64::from(setup.grid_cycles())
     };
-    let motor_steps = rates.len() as f64 * motors.iter().map(points).sum::<f64>();
-    if motor_steps > MAX_MOTOR_STEPS {
+    let motor_grid_steps = rates.len() as f64 * motors.iter().map(points).sum::<f64>();
+    if motor_grid_steps > MAX_MOTOR_GRID_STEPS {
         return Err(invalid(format!(
-            "the map needs {motor_steps:.2e} motor steps, more than {MAX_MOTOR_STEPS:e}; use a larger --step, or one --channel"
+            "the map needs {motor_grid_steps:.2e} grid steps of all motors, more than {MAX_MOTOR_GRID_STEPS:e}; use a larger --step, or one --channel"
         )));
     }
     let points = in_parallel(common, ("resonance", "rates"), rates.len() * motors.len(), |index| {

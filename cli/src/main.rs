@@ -46,7 +46,7 @@ use crate::failure::Failure;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::io::{self, Write};
 use std::process::ExitCode;
-use stepscope_core::inspect::export::plain_text::is_unsafe;
+use stepscope_core::inspect::export::plain_text::needs_escape;
 
 /// Simulate and check stepper motion with clock-cycle accuracy
 #[derive(Parser)]
@@ -89,7 +89,7 @@ enum Command {
     Plant(plant::Arguments),
     /// Measure the settling time of each motor's supply current after a step
     ///
-    /// In patent RU 2704486, steps of different motors are at least this far apart.
+    /// Patent RU 2704486 separates steps of different motors by at least this time.
     Settling(limits::SettlingArguments),
     /// Find the start-stop rate and the pull-out rate of each motor
     Limits(limits::LimitsArguments),
@@ -144,23 +144,22 @@ fn main() -> ExitCode {
         let arguments = Arguments::from_arg_matches(&matches)?;
         Ok((matches, arguments))
     });
-    let result = match arguments {
-        Ok((matches, arguments)) => paths::check(&matches).and_then(|()| run(arguments.command)),
-        Err(error) => match print_usage(&error) {
-            Ok(code) => return code,
-            Err(error) => Err(Failure::output(error)),
-        },
+    let (matches, arguments) = match arguments {
+        Ok(arguments) => arguments,
+        Err(error) => return print_usage(&error).unwrap_or_else(|error| report(&Failure::output(error))),
     };
-    match result {
+    match paths::check(&matches).and_then(|()| run(arguments.command)) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            if !failure.is_closed_pipe() {
-                // If standard error is closed, the exit code remains.
-                let _ = writeln!(terminal::err(), "{failure}");
-            }
-            failure.exit_code()
-        }
+        Err(failure) => report(&failure),
     }
+}
+
+/// Prints a failure; returns its exit code, which remains even if standard error is closed.
+fn report(failure: &Failure) -> ExitCode {
+    if !failure.is_closed_pipe() {
+        let _ = writeln!(terminal::err(), "{failure}");
+    }
+    failure.exit_code()
 }
 
 fn run(command: Command) -> Result<(), Failure> {
@@ -192,11 +191,11 @@ fn run(command: Command) -> Result<(), Failure> {
 /// Prints help, or a usage error; returns the exit code.
 fn print_usage(error: &clap::Error) -> io::Result<ExitCode> {
     // A usage error repeats the user's text, which must not control the terminal.
-    let is_unsafe = |c| is_unsafe(c) && c != '\n' && c != '\t';
+    let is_control = |c| needs_escape(c) && c != '\n' && c != '\t';
     if !error.use_stderr() {
         error.print()?;
         io::stdout().flush()?;
-    } else if std::env::args_os().any(|word| word.to_string_lossy().contains(is_unsafe)) {
+    } else if std::env::args_os().any(|word| word.to_string_lossy().contains(is_control)) {
         let _ = write!(terminal::err(), "{}", error.render());
     } else {
         let _ = error.print();

@@ -191,9 +191,10 @@ fn print<S: Sink, O: Observer>(
     let mut out = io::BufWriter::new(terminal::out());
     writeln!(out, "plant digest     {:016x}", result.digest)?;
     writeln!(out, "simulated to     {:.3} ms, cycle {}", ms(result.cycle, clock_hz), result.cycle)?;
-    let (load, bus) = (&result.load_a, &result.bus_v);
-    writeln!(out, "supply current   {:.3} to {:.3} A, RMS {:.3} A", load.min, load.max, load.rms())?;
-    writeln!(out, "bus              {:.3} to {:.3} V", bus.min, bus.max)?;
+    let (current, voltage) = (&result.supply_a, &result.supply_v);
+    let rms = current.rms();
+    writeln!(out, "supply current   {:.3} to {:.3} A, RMS {rms:.3} A", current.min, current.max)?;
+    writeln!(out, "bus              {:.3} to {:.3} V", voltage.min, voltage.max)?;
     if let Some(found) = &result.deviation {
         let Deviation { rest_a, above_a, below_a } = found;
         writeln!(

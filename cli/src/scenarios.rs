@@ -32,11 +32,11 @@ pub(crate) fn validated_after(
     path: &Path,
     check: impl FnOnce(&Scenario) -> Result<(), Failure>,
 ) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
-    let (scenario, unread) = Scenario::from_json_lenient(&scenario_text(path)?);
-    if unread.is_empty() {
+    let (scenario, unreadable) = Scenario::from_json_lenient(&scenario_text(path)?);
+    if unreadable.is_empty() {
         check(&scenario)?;
     }
-    let experiment = Experiment::of_lenient(&scenario, unread);
+    let experiment = Experiment::from_partial(&scenario, unreadable);
     let wrong = |problems: Vec<Problem>| Failure::Scenario(path.to_owned(), problems);
     let experiment = experiment.map_err(wrong)?;
     if experiment.jogs_without_end() {

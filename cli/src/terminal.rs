@@ -8,7 +8,7 @@ use std::{
     io::{self, StderrLock, StdoutLock, Write},
     path::Path,
 };
-use stepscope_core::inspect::export::plain_text::is_unsafe;
+use stepscope_core::inspect::export::plain_text::needs_escape;
 
 pub(crate) fn out() -> EscapingWriter<StdoutLock<'static>> {
     EscapingWriter { to: io::stdout().lock(), incomplete: Vec::new() }
@@ -28,7 +28,7 @@ pub(crate) struct EscapingWriter<W> {
 impl<W: Write> EscapingWriter<W> {
     fn write_escaped(&mut self, text: &str) -> io::Result<()> {
         let mut rest = text;
-        while let Some(at) = rest.find(|c| is_unsafe(c) && !matches!(c, '\n' | '\t')) {
+        while let Some(at) = rest.find(|c| needs_escape(c) && !matches!(c, '\n' | '\t')) {
             let (plain, from) = rest.split_at(at);
             self.to.write_all(plain.as_bytes())?;
             let mut chars = from.chars();
@@ -80,7 +80,11 @@ impl<T: fmt::Display> fmt::Display for Escaped<T> {
         impl fmt::Write for Escape<'_, '_> {
             fn write_str(&mut self, text: &str) -> fmt::Result {
                 text.chars().try_for_each(|c| {
-                    if is_unsafe(c) { write!(self.0, "{}", c.escape_unicode()) } else { self.0.write_char(c) }
+                    if needs_escape(c) {
+                        write!(self.0, "{}", c.escape_unicode())
+                    } else {
+                        self.0.write_char(c)
+                    }
                 })
             }
         }
@@ -94,7 +98,7 @@ impl<T: fmt::Display> fmt::Display for Escaped<T> {
 pub(crate) fn json(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
-        if is_unsafe(c) && c != '\n' {
+        if needs_escape(c) && c != '\n' {
             // All of them are below U+10000. Writing to a String cannot fail.
             let _ = write!(safe, "\\u{:04x}", u32::from(c));
         } else {
@@ -137,7 +141,7 @@ mod tests {
     fn escaped_json_has_the_same_value() {
         let given = serde_json::json!({ "title": "\u{9b}2J\u{202e}\u{7f} ü \u{1b}\n" });
         let text = json(&format!("{given:#}"));
-        assert!(!text.chars().any(|c| is_unsafe(c) && c != '\n'), "{text}");
+        assert!(!text.chars().any(|c| needs_escape(c) && c != '\n'), "{text}");
         assert_eq!(serde_json::from_str::<serde_json::Value>(&text).expect("JSON"), given);
     }
 }

@@ -18,7 +18,7 @@ use stepscope_core::inspect::plant::model_agreement::{Agreement, FirstSlips, agr
 use stepscope_core::motion::{moves::Axis, plan_lists};
 use stepscope_core::peripheral::{trace::Digest, units::Cycles};
 use stepscope_core::scenario::{Motion, Problem, Scenario, Source, ValueError, of_motion};
-use stepscope_core::sim::{BUDGET_MOTOR_STEPS, Experiment, plant_run::PlantRun};
+use stepscope_core::sim::{BUDGET_MOTOR_GRID_STEPS, Experiment, plant_run::PlantRun};
 
 /// Cycles between progress reports.
 const SLICE: Cycles = Cycles(1 << 22);
@@ -109,10 +109,10 @@ fn compare_with_plant(
         }
         Err(_) => return not_run("the scenario has problems, which --plant lists".to_owned()),
     };
-    let motor_steps = experiment.cost().motor_steps;
-    if motor_steps > BUDGET_MOTOR_STEPS && !arguments.plant {
+    let motor_grid_steps = experiment.cost().motor_grid_steps;
+    if motor_grid_steps > BUDGET_MOTOR_GRID_STEPS && !arguments.plant {
         return not_run(format!(
-            "the simulation takes {motor_steps} motor steps; use --plant to run it anyway"
+            "the simulation takes {motor_grid_steps} grid steps of all motors; use --plant to run it anyway"
         ));
     }
     let parts = (0..experiment.controllers()).map(|_| <(Digest, FirstSlips)>::default()).collect();

@@ -78,7 +78,10 @@ fn compares_the_torque_curve_with_the_plant() {
     );
     let scenario = r#"{"run_cycles":10000000000,"plant":{},"source":{"motion":{"axes":[{"motor":{}}]}}}"#;
     let (code, out, _) = stepscope(&["torque", "-"], scenario);
-    assert!(code == Some(0) && out.contains("motor steps; use --plant to run it anyway"), "{out}");
+    assert!(
+        code == Some(0) && out.contains("grid steps of all motors; use --plant to run it anyway"),
+        "{out}"
+    );
 }
 
 #[test]

@@ -16,7 +16,7 @@ use stepscope_core::{
 /// The firmware: a ramp of ticks on channel 0, from 1 step in the first to 8 in the eighth. It only uses registers; on a
 /// chip `bus` makes volatile accesses.
 fn ramp(bus: &mut impl RegisterBus) {
-    while status::STATE.of(bus.read(status::OFFSET)) == status::STATE_BUSY {} // the self-test after reset
+    while status::STATE.extract(bus.read(status::OFFSET)) == status::STATE_BUSY {} // the self-test after reset
     for steps in 1..=8 {
         bus.write(orders::OFFSET, 0x80 | steps); // bit 7: to the right
         bus.write(push::OFFSET, 1);

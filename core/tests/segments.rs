@@ -106,7 +106,7 @@ proptest! {
         prop_assert_eq!(lists.end().0, end);
         prop_assert!(lists.max_records() >= expected.len() as u64);
         let done = |engine: &SegmentEngine| {
-            (engine.at_rest(), engine.cycles_until_event(), engine.now().0, engine.positions()) == (true, None, end + 1, positions)
+            (engine.is_idle(), engine.cycles_until_event(), engine.now().0, engine.positions()) == (true, None, end + 1, positions)
         };
 
         let (mut fast, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
@@ -116,7 +116,7 @@ proptest! {
 
         let (mut clocked, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
         let mut levels = Levels(0);
-        while !engine.at_rest() {
+        while !engine.is_idle() {
             levels = engine.clock(&mut clocked);
         }
         prop_assert_eq!(&clocked, &expected);
@@ -124,7 +124,7 @@ proptest! {
         prop_assert!(done(&engine), "{:?}", engine);
 
         let (mut sliced, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
-        while !engine.at_rest() {
+        while !engine.is_idle() {
             let pause = sliced.len() + slice;
             engine.run(Instant::NEVER, &mut Slice(&mut sliced, pause));
         }
@@ -165,8 +165,8 @@ proptest! {
         let at = place.get(&expected).cycle.0 + late;
         let (mut found, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
         engine.run(Instant(at), &mut found);
-        engine.overload();
-        engine.overload();
+        engine.stop_on_overload();
+        engine.stop_on_overload();
         if at == 0 {
             engine.run(Instant::NEVER, &mut found);
             prop_assert_eq!((found, engine.positions()), (expected, positions), "before cycle 0 nothing");
@@ -183,10 +183,10 @@ proptest! {
             if clocked {
                 prop_assert_eq!(engine.clock(&mut found), Levels(levels));
             }
-            engine.overload();
+            engine.stop_on_overload();
             engine.run(Instant::NEVER, &mut found);
             prop_assert_eq!(&found, &left);
-            prop_assert_eq!((engine.at_rest(), engine.now(), engine.positions()), (true, Instant(at + 1), cut_short));
+            prop_assert_eq!((engine.is_idle(), engine.now(), engine.positions()), (true, Instant(at + 1), cut_short));
             prop_assert_eq!(engine.faults(), Faults::OVERLOAD);
         }
     }

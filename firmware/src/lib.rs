@@ -107,7 +107,7 @@ impl<B: RegisterBus> Driver<B> {
         if found != id::MAGIC_STEP {
             return Err(Error::NotFound(found));
         }
-        match capabilities::VERSION.of(bus.read(capabilities::OFFSET)) {
+        match capabilities::VERSION.extract(bus.read(capabilities::OFFSET)) {
             capabilities::VERSION_1 => Ok(Self { bus }),
             version => Err(Error::UnknownVersion(version)),
         }
@@ -120,12 +120,12 @@ impl<B: RegisterBus> Driver<B> {
 
     /// Waits until the self-test after reset has ended.
     pub fn wait_for_self_test(&mut self) {
-        while status::STATE.of(self.bus.read(status::OFFSET)) == status::STATE_BUSY {}
+        while status::STATE.extract(self.bus.read(status::OFFSET)) == status::STATE_BUSY {}
     }
 
     /// Number of channels, 1 to 16.
     pub fn channels(&mut self) -> u32 {
-        capabilities::CHANNELS.of(self.bus.read(capabilities::OFFSET))
+        capabilities::CHANNELS.extract(self.bus.read(capabilities::OFFSET))
     }
 
     /// Maximum steps per channel and tick, 1 to 127.
@@ -180,7 +180,7 @@ impl<B: RegisterBus> Driver<B> {
         ticks: &mut impl Iterator<Item = [ChannelCommand; N]>,
     ) -> Result<u32, Error> {
         let mut pushed = 0;
-        while status::FREE.of(self.bus.read(status::OFFSET)) > 0 {
+        while status::FREE.extract(self.bus.read(status::OFFSET)) > 0 {
             let Some(tick) = ticks.next() else { break };
             self.push(&tick)?;
             pushed += 1;
@@ -194,7 +194,7 @@ impl<B: RegisterBus> Driver<B> {
     /// [`Error::Stopped`]: remaining ticks never run.
     pub fn is_done(&mut self) -> Result<bool, Error> {
         let read = self.bus.read(status::OFFSET);
-        match status::STATE.of(read) {
+        match status::STATE.extract(read) {
             status::STATE_STOPPED => Err(Error::Stopped),
             _ => Ok(!status::MOVING.is_set(read)),
         }
@@ -229,7 +229,7 @@ impl<B: RegisterBus> Driver<B> {
     }
 
     fn result(&mut self) -> Result<(), Error> {
-        match result::CODE.of(self.bus.read(result::OFFSET)) {
+        match result::CODE.extract(self.bus.read(result::OFFSET)) {
             result::CODE_DONE => Ok(()),
             result::CODE_QUEUE_FULL => Err(Error::Full),
             result::CODE_TOO_MANY_STEPS => Err(Error::TooManySteps),

@@ -163,14 +163,14 @@ proptest! {
         let _ = judge(&changed(&scenario, &changes));
     }
 
-    /// Where it holds it is over soon: so many cycles, and so many motor-steps, were known before.
+    /// Where it holds it is over soon: so many cycles, and so many grid steps of all motors, were known before.
     #[test]
     fn no_plant_of_any_numbers_fails_and_every_run_of_one_has_the_same_bits(scenario in driven()) {
         if let Ok(experiment) = judge(&scenario.to_json())
-            && experiment.cost().motor_steps <= 100_000
+            && experiment.cost().motor_grid_steps <= 100_000
         {
             let made = drive(&experiment);
-            prop_assert!(made <= experiment.cost().motor_steps, "{made}");
+            prop_assert!(made <= experiment.cost().motor_grid_steps, "{made}");
         }
     }
 

@@ -276,8 +276,11 @@ fn an_overload_stops_a_controller_as_stop_does() {
         assert_eq!(device.faults(), Faults::OVERLOAD, "{line}");
         assert_eq!(device.read(stepscope_registers::faults::OFFSET), 1 << 8);
         let status = device.read(stepscope_registers::status::OFFSET);
-        assert_eq!(stepscope_registers::status::STATE.of(status), stepscope_registers::status::STATE_STOPPED);
-        assert_eq!(stepscope_registers::status::EN.of(status), 0);
+        assert_eq!(
+            stepscope_registers::status::STATE.extract(status),
+            stepscope_registers::status::STATE_STOPPED
+        );
+        assert_eq!(stepscope_registers::status::EN.extract(status), 0);
         if !line.is_empty() {
             assert_eq!(device.status().expect("framed").faults, 1 << 8);
         }
@@ -379,18 +382,18 @@ fn a_plant_changes_no_edge_by_itself() {
 #[test]
 fn the_cost_of_a_plant_is_judged_before_it_runs() {
     let cost = |json: &str| experiment(json).cost();
-    assert_eq!(cost("{}").motor_steps, 0);
+    assert_eq!(cost("{}").motor_grid_steps, 0);
     let default = cost(r#"{"plant":{},"run_cycles":16000000}"#);
-    assert_eq!((default.motor_steps, default.is_over_budget()), (200_000, false));
+    assert_eq!((default.motor_grid_steps, default.is_over_budget()), (200_000, false));
     let sixteen = cost(r#"{"plant":{"step_cycles":1},"bus":{"channels":16},"run_cycles":16000000}"#);
-    assert_eq!((sixteen.motor_steps, sixteen.is_over_budget()), (256_000_000, true));
+    assert_eq!((sixteen.motor_grid_steps, sixteen.is_over_budget()), (256_000_000, true));
     let problems = Experiment::from_json(
         r#"{"plant":{"step_cycles":1},"bus":{"channels":16},"run_cycles":16000000000}"#,
     )
     .expect_err("too much");
     assert_eq!(
         problems[0].to_string(),
-        "plant.step_cycles: 256000000000 motor-steps of the plant exceed the maximum of 10000000000; \
+        "plant.step_cycles: 256000000000 grid steps of all motors exceed the maximum of 10000000000; \
          use a shorter run, fewer channels or a larger step_cycles"
     );
 }

@@ -136,7 +136,7 @@ impl Observer for Held<'_> {
         let (cycle, expected) = (plant.cycle(), &self.run.points[self.points]);
         self.points += 1;
         assert_eq!((cycle, plant.is_powered()), (expected.cycle, expected.en));
-        let supply = [plant.bus_v(), plant.load_a(), plant.current_sensor().filtered()];
+        let supply = [plant.supply_v(), plant.supply_a(), plant.current_sensor().filtered()];
         assert_eq!(
             supply.map(f64::to_bits),
             [expected.v, expected.i_load, expected.sensed_a].map(f64::to_bits),

@@ -8,12 +8,13 @@ use crate::{apt, run};
 
 pub(crate) const PACKAGE: &str = "stepscope-cortex-m3";
 
-/// The emulator that `.cargo/config.toml` names; Debian's package has the same name.
+/// The emulator that `.cargo/config.toml` names.
 const QEMU: &str = "qemu-system-arm";
+const DEBIAN_PACKAGE: &str = QEMU;
 
 pub(crate) async fn test() -> Result<()> {
     toolchain::target(BARE_METAL).await?;
-    apt::require("the microcontroller's test", &[QEMU], &[QEMU]).await?;
+    apt::require("the microcontroller's test", &[QEMU], &[DEBIAN_PACKAGE]).await?;
     run::compile(cargo("build")).await?;
     run::to_end(cargo("run")).await
 }

@@ -12,7 +12,7 @@
 use crate::named::named_enum;
 use stepscope_peripheral::units::Instant;
 
-// Buttons and keys are in the order in which a cycle handles them (G1.4).
+// The order matters: a cycle handles buttons and keys in it (G1.4), and `is_button`, `is_sensor` and `digit` are ranges of it.
 named_enum! { (PartialOrd, Ord, Hash)
     /// An input signal of a controller.
     #[allow(missing_docs, reason = "keys and free inputs are named by their numbers")]
@@ -31,8 +31,9 @@ named_enum! { (PartialOrd, Ord, Hash)
         JogPlus = "jog_plus",
         /// Jog to the left while it is held.
         JogMinus = "jog_minus",
-        /// Returns to zero, or homes if the position is not trusted.
+        /// Returns to zero, or homes if the position is lost.
         Zero = "zero",
+        /// Starts homing.
         Home = "home",
         /// Enters or leaves DEBUG.
         Debug = "debug",
@@ -42,7 +43,6 @@ named_enum! { (PartialOrd, Ord, Hash)
         Ok = "ok",
         /// Leaves EDIT and saves the numbers.
         Back = "back",
-        /// The digit keys 0 to 9.
         Key0 = "key_0",
         Key1 = "key_1",
         Key2 = "key_2",
@@ -86,7 +86,7 @@ impl Signal {
         self >= Self::LimitMin
     }
 
-    /// Whether it is a limit or the home switch, which an axis can drive.
+    /// Whether it is a limit or home switch, which the simulated axis can operate by its position.
     pub const fn is_switch(self) -> bool {
         matches!(self, Self::LimitMin | Self::LimitMax | Self::HomeSwitch)
     }
@@ -102,7 +102,8 @@ impl Signal {
 pub enum Change {
     /// Sets the raw level of a signal from this cycle on.
     Level(Signal, bool),
-    /// Moves the axis by hand by -10^6 to 10^6 steps, right positive. It has an effect only while EN = 0.
+    /// Moves the axis by hand by -10^6 to 10^6 steps, right positive. It has an effect only while the motor
+    /// is disabled (EN = 0).
     Push(i32),
 }
 

@@ -169,13 +169,13 @@ impl StandAlone {
     }
 
     /// The cycle after the last event, once the run has ended.
-    pub const fn idle_from(&self) -> Instant {
+    pub const fn idle_since(&self) -> Instant {
         Instant(self.last_event.saturating_add(1))
     }
 
     /// Whether no event follows. A memory that writes the same record again and again, because its sequence number is the
     /// maximum, has no events.
-    pub fn at_rest(&self) -> bool {
+    pub fn is_idle(&self) -> bool {
         self.now > 0
             && (self.too_many_groups.is_some()
                 || self.controllers.iter().all(|controller| controller.due() == NEVER))

@@ -17,7 +17,7 @@ use serde::Serialize;
 use stepscope_motion::{AxisPlan, PlannedMove, grouped, moves::Axis};
 use stepscope_peripheral::config::Config;
 use stepscope_scenario::{Problem, Scenario};
-use stepscope_sim::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};
+use stepscope_sim::{BUDGET_MOTOR_GRID_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};
 
 /// The result of validating a scenario.
 #[derive(Clone, Debug, Serialize)]
@@ -121,11 +121,11 @@ fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
 impl RunCost {
     /// The cost of a run as text.
     pub fn of(cost: Cost) -> Self {
-        let message = if cost.motor_steps > BUDGET_MOTOR_STEPS {
+        let message = if cost.motor_grid_steps > BUDGET_MOTOR_GRID_STEPS {
             format!(
-                "{} motor-steps of the plant: more than the {} that run without confirmation",
-                grouped(cost.motor_steps as f64),
-                grouped(BUDGET_MOTOR_STEPS as f64)
+                "{} grid steps of all motors: more than the {} that run without confirmation",
+                grouped(cost.motor_grid_steps as f64),
+                grouped(BUDGET_MOTOR_GRID_STEPS as f64)
             )
         } else if cost.is_over_budget() {
             format!(

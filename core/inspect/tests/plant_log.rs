@@ -13,7 +13,7 @@ struct Points(Vec<(u64, Vec<f64>)>);
 
 impl Observer for Points {
     fn point(&mut self, plant: &Plant) {
-        let mut values = vec![plant.bus_v(), plant.load_a(), plant.current_sensor().filtered()];
+        let mut values = vec![plant.supply_v(), plant.supply_a(), plant.current_sensor().filtered()];
         for channel in 0..plant.motors() {
             let state = plant.state(channel).expect("a motor");
             let command = plant.command(channel);

@@ -113,7 +113,7 @@ fn remedy_for(quantity: &str) -> &'static str {
         "sine segments" => "a larger maximum deviation or fewer sines",
         "entries" => "a shorter motion or a larger tolerance",
         "cycles of tolerance" => "a smaller tolerance",
-        "motor-steps of the plant" => "a shorter run, fewer channels or a larger step_cycles",
+        "grid steps of all motors" => "a shorter run, fewer channels or a larger step_cycles",
         "bytes of all frames and their repetitions" => {
             "a shorter motion, longer ticks, more ticks per frame or fewer attempts"
         }

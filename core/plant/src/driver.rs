@@ -31,7 +31,7 @@ pub(crate) struct PhaseInput {
     /// Voltage in V per A of change within the step.
     pub(crate) ra: f64,
     /// Bus voltage in V.
-    pub(crate) bus: f64,
+    pub(crate) supply_v: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ struct Chopper {
     count: u32,
     /// The current has passed 0 in this off-time.
     has_passed: bool,
-    /// Voltage in units of the bus voltage for a positive current: 1 on, -1 fast decay, 0 slow decay.
+    /// Voltage in units of the supply voltage for a positive current: 1 on, -1 fast decay, 0 slow decay.
     part: f64,
 }
 
@@ -89,13 +89,13 @@ impl Phase {
         Self { target, share, chopper }
     }
 
-    /// An ideal chopper: the target is reached within the step, as far as the bus voltage allows.
+    /// An ideal chopper: the target is reached within the step, as far as the supply voltage allows.
     fn averaged(&self, input: &PhaseInput) -> Applied {
         let t = self.target;
         let mut v = input.e + input.r * input.i + (t - input.i) * input.ra;
-        let braking = self.share * input.bus;
-        let max = if t > 0.0 { input.bus } else { braking };
-        let min = if t < 0.0 { -input.bus } else { -braking };
+        let braking = self.share * input.supply_v;
+        let max = if t > 0.0 { input.supply_v } else { braking };
+        let min = if t < 0.0 { -input.supply_v } else { -braking };
         // Not f64::min and max: the sign of a zero would depend on the platform.
         if v > max {
             v = max;
@@ -115,7 +115,7 @@ impl Phase {
     /// A real chopper in its present state.
     fn chopped(&self, input: &PhaseInput) -> Applied {
         let part = self.chopper.part;
-        Applied::voltage(if part == 0.0 { 0.0 } else { part * (self.direction(input.i) * input.bus) })
+        Applied::voltage(if part == 0.0 { 0.0 } else { part * (self.direction(input.i) * input.supply_v) })
     }
 
     /// Decides the state of the chopper at a grid point with the current `i`.
@@ -142,9 +142,9 @@ impl Phase {
         }
     }
 
-    /// EN = 0: the diodes return the remaining current to the bus.
+    /// EN = 0: the diodes return the remaining current to the supply.
     fn through_diodes(input: &PhaseInput, diodes: f64) -> Applied {
-        let against = input.bus + diodes;
+        let against = input.supply_v + diodes;
         if input.i == 0.0 {
             return if input.e.abs() > against {
                 Applied::voltage(sign(input.e) * against)

@@ -1,7 +1,7 @@
 //! Running measures of a plant (PLANT F8): following error, slips, overshoot, settling after the last step, currents, voltage.
 //!
-//! When a rotor settled depends on its final position, which is known only at the end. `Tail` saves the positions since the
-//! last STEP that are above (below) all later ones: only these can be the last one outside of the final tolerance.
+//! When a rotor settled depends on its final position, which is known only at the end. `SettlingCandidates` saves the positions
+//! that can be the last one outside of the final tolerance.
 //!
 //! ```
 //! use stepscope_plant::{Plant, measures::Measures, parameters::{MotorModel, Setup}};
@@ -12,7 +12,7 @@
 //! plant.advance(16_000, &mut measures);
 //! let result = measures.result(&plant);
 //! assert_eq!((result.motors[0].lost, result.motors[0].overshoot), (0, None));
-//! assert_eq!((result.bus_v.min, result.bus_v.max), (24.0, 24.0));
+//! assert_eq!((result.supply_v.min, result.supply_v.max), (24.0, 24.0));
 //! ```
 
 use crate::plant::{Observer, Plant};
@@ -26,7 +26,7 @@ const SETTLED: f64 = 0.05;
 
 /// Minimum, maximum and root mean square of a value over grid points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extremes {
+pub struct Statistics {
     /// Minimum; infinite before the first point.
     pub min: f64,
     /// Maximum; minus infinity before the first point.
@@ -35,13 +35,13 @@ pub struct Extremes {
     points: u64,
 }
 
-impl Default for Extremes {
+impl Default for Statistics {
     fn default() -> Self {
         Self { min: f64::INFINITY, max: f64::NEG_INFINITY, squares: 0.0, points: 0 }
     }
 }
 
-impl Extremes {
+impl Statistics {
     fn add(&mut self, value: f64) {
         if value < self.min {
             self.min = value;
@@ -64,39 +64,40 @@ impl Extremes {
     }
 }
 
-/// Positions of a rotor since its last STEP that can decide when it has settled, with their cycles.
+/// Positions of a rotor since its last STEP, with their cycles, in two monotonic stacks. A position that a later one exceeds
+/// cannot be the last one above the final tolerance, so it is dropped; likewise below it.
 #[derive(Clone, Debug, Default)]
-struct Tail {
-    above: Vec<(u64, f64)>,
-    below: Vec<(u64, f64)>,
+struct SettlingCandidates {
+    falling: Vec<(u64, f64)>,
+    rising: Vec<(u64, f64)>,
 }
 
-impl Tail {
+impl SettlingCandidates {
     fn clear(&mut self) {
-        self.above.clear();
-        self.below.clear();
+        self.falling.clear();
+        self.rising.clear();
     }
 
     fn add(&mut self, cycle: u64, x: f64) {
-        while self.above.last().is_some_and(|&(_, value)| value <= x) {
-            self.above.pop();
+        while self.falling.last().is_some_and(|&(_, value)| value <= x) {
+            self.falling.pop();
         }
-        self.above.push((cycle, x));
-        while self.below.last().is_some_and(|&(_, value)| value >= x) {
-            self.below.pop();
+        self.falling.push((cycle, x));
+        while self.rising.last().is_some_and(|&(_, value)| value >= x) {
+            self.rising.pop();
         }
-        self.below.push((cycle, x));
+        self.rising.push((cycle, x));
     }
 
     /// The last cycle in which the position was more than `tolerance` away from `end`.
     fn last_outside(&self, end: f64, tolerance: f64) -> Option<u64> {
-        let above = self.above.iter().rev().find(|&&(_, x)| x - end > tolerance);
-        let below = self.below.iter().rev().find(|&&(_, x)| end - x > tolerance);
+        let above = self.falling.iter().rev().find(|&&(_, x)| x - end > tolerance);
+        let below = self.rising.iter().rev().find(|&&(_, x)| end - x > tolerance);
         above.into_iter().chain(below).map(|&(cycle, _)| cycle).max()
     }
 }
 
-/// The last step of a motor, and the extremes of its position since then.
+/// The last step of a motor, and the extremes of its position at the grid points since then.
 #[derive(Clone, Debug)]
 struct LastStep {
     cycle: u64,
@@ -110,33 +111,35 @@ struct MotorMeasures {
     following_error: Peak,
     max_speed: Peak,
     max_load_speed: f64,
-    currents: [Extremes; 2],
+    currents: [Statistics; 2],
     slips: Vec<Slip>,
     slip_count: u64,
-    first_slip_step: Option<u64>,
+    steps_until_first_slip: Option<u64>,
     last_step: Option<LastStep>,
-    tail: Tail,
+    candidates: SettlingCandidates,
 }
 
 /// An observer that measures all motors and the supply.
 #[derive(Clone, Debug, Default)]
 pub struct Measures {
     motors: Vec<MotorMeasures>,
-    load: Extremes,
-    bus: Extremes,
+    supply_current: Statistics,
+    supply_voltage: Statistics,
     collapsed: Option<u64>,
-    /// Sum and number of the readings of the current sensor before the first step.
-    rest_readings: f64,
-    rest_points: u64,
+    /// Sum of the current sensor's readings before the first step.
+    idle_readings_sum: f64,
+    /// Number of these readings.
+    idle_readings: u64,
     has_stepped: bool,
-    /// Steps per motor, and the sensor readings from the first motor's fifth step on.
+    /// Steps per motor.
     steps: Vec<u64>,
-    sensor: Extremes,
+    /// The sensor's readings from step [`FIRST_MEASURED_STEP`] of the first motor on.
+    sensor: Statistics,
 }
 
-/// The deviation starts with this step of the first motor.
+/// The deviation of the supply current uses samples from this step of the first motor on.
 const FIRST_MEASURED_STEP: u64 = 5;
-/// Minimum steps of each motor for a deviation.
+/// Minimum steps of each motor for a deviation of the supply current.
 const MIN_STEPS: u64 = 8;
 
 /// An extreme value and its grid point.
@@ -157,15 +160,16 @@ pub struct MotorResult {
     /// The first [`MAX_SLIPS`] slips of four full steps.
     pub slips: Vec<Slip>,
     pub slip_count: u64,
-    /// Steps before the first slip.
-    pub first_slip_step: Option<u64>,
+    /// Steps until the first slip, the one that slipped included.
+    pub steps_until_first_slip: Option<u64>,
     /// Command minus position where their distance is maximal, in full steps.
     pub following_error: Peak,
     /// Maximum speed of the rotor without sign, in full steps/s.
     pub max_speed: Peak,
     /// Maximum speed of the load without sign, in full steps/s; without a coupling the rotor's.
     pub max_load_speed: f64,
-    /// Distance beyond the last command in the direction of the last step, in full steps; `None` without a step.
+    /// Distance beyond the last command in the direction of the last step, in full steps; negative if the rotor stayed short of
+    /// it. `None` before the first grid point after a step.
     pub overshoot: Option<f64>,
     /// Cycles from the last step until the rotor stays within 0.05 full steps of its final position; `None` without a step.
     pub settling: Option<u64>,
@@ -184,10 +188,10 @@ pub struct PlantResult {
     pub digest: u64,
     pub motors: Vec<MotorResult>,
     /// Supply current in A.
-    pub load_a: Extremes,
-    /// Bus voltage in V.
-    pub bus_v: Extremes,
-    /// Cycle of the first point at which the bus is at 1/16 of the source voltage or less.
+    pub supply_a: Statistics,
+    /// Supply voltage at the drivers in V.
+    pub supply_v: Statistics,
+    /// Cycle of the first point at which this voltage is at 1/16 of the source voltage or less.
     pub collapsed: Option<u64>,
     /// Deviation of the measured supply current from its mean before the first step, from the first motor's fifth step
     /// on; `None` if a motor makes fewer than eight steps.
@@ -199,7 +203,8 @@ impl Measures {
     pub fn new(plant: &Plant) -> Self {
         let motors = alloc::vec![MotorMeasures::default(); plant.motors()];
         let mut new = Self { motors, steps: alloc::vec![0; plant.motors()], ..Self::default() };
-        new.bus.add(plant.bus_v());
+        // The voltage at the start is a minimum or maximum that grid points may not reach again.
+        new.supply_voltage.add(plant.supply_v());
         new
     }
 
@@ -214,8 +219,8 @@ impl Measures {
                 .enumerate()
                 .map(|(channel, motor)| motor.result(plant, channel))
                 .collect(),
-            load_a: self.load,
-            bus_v: self.bus,
+            supply_a: self.supply_current,
+            supply_v: self.supply_voltage,
             collapsed: self.collapsed,
             deviation: self.deviation(),
         }
@@ -223,10 +228,10 @@ impl Measures {
 
     fn deviation(&self) -> Option<Deviation> {
         let has_enough_steps = self.steps.iter().all(|&steps| steps >= MIN_STEPS);
-        if !has_enough_steps || self.rest_points == 0 || self.sensor.points == 0 {
+        if !has_enough_steps || self.idle_readings == 0 || self.sensor.points == 0 {
             return None;
         }
-        let rest_a = self.rest_readings / self.rest_points as f64;
+        let rest_a = self.idle_readings_sum / self.idle_readings as f64;
         let (above_a, below_a) = (self.sensor.max - rest_a, rest_a - self.sensor.min);
         Some(Deviation { rest_a, above_a: above_a.max(0.0), below_a: below_a.max(0.0) })
     }
@@ -250,13 +255,17 @@ impl MotorMeasures {
             lost: plant.lost(channel),
             slips: self.slips.clone(),
             slip_count: self.slip_count,
-            first_slip_step: self.first_slip_step,
+            steps_until_first_slip: self.steps_until_first_slip,
             following_error: self.following_error,
             max_speed: self.max_speed,
             max_load_speed: self.max_load_speed,
-            overshoot: last.map(|last| if last.right { last.max - command } else { command - last.min }),
+            overshoot: last
+                .filter(|last| last.min <= last.max)
+                .map(|last| if last.right { last.max - command } else { command - last.min }),
             settling: last.map(|last| {
-                self.tail.last_outside(state.x, SETTLED).map_or(0, |cycle| cycle.saturating_sub(last.cycle))
+                self.candidates
+                    .last_outside(state.x, SETTLED)
+                    .map_or(0, |cycle| cycle.saturating_sub(last.cycle))
             }),
             last_step: last.map(|last| last.cycle),
             phase_peak_a: a.peak().max(b.peak()),
@@ -283,7 +292,7 @@ impl MotorMeasures {
             if state.x > last.max {
                 last.max = state.x;
             }
-            self.tail.add(cycle, state.x);
+            self.candidates.add(cycle, state.x);
         }
     }
 }
@@ -296,15 +305,15 @@ impl Observer for Measures {
                 motor.point(state, plant.command(channel), cycle);
             }
         }
-        self.load.add(plant.load_a());
+        self.supply_current.add(plant.supply_a());
         let reading = plant.current_sensor().filtered();
         if !self.has_stepped {
-            self.rest_readings += reading;
-            self.rest_points += 1;
+            self.idle_readings_sum += reading;
+            self.idle_readings += 1;
         } else if self.steps.first().is_some_and(|&steps| steps >= FIRST_MEASURED_STEP) {
             self.sensor.add(reading);
         }
-        self.bus.add(plant.bus_v());
+        self.supply_voltage.add(plant.supply_v());
         if plant.has_collapsed() && self.collapsed.is_none() {
             self.collapsed = Some(cycle);
         }
@@ -313,7 +322,8 @@ impl Observer for Measures {
     fn slip(&mut self, channel: usize, slip: Slip) {
         if let Some(motor) = self.motors.get_mut(channel) {
             motor.slip_count += 1;
-            motor.first_slip_step = motor.first_slip_step.or_else(|| self.steps.get(channel).copied());
+            motor.steps_until_first_slip =
+                motor.steps_until_first_slip.or_else(|| self.steps.get(channel).copied());
             if motor.slips.len() < MAX_SLIPS {
                 motor.slips.push(slip);
             }
@@ -329,7 +339,7 @@ impl Observer for Measures {
             if rises >> channel & 1 != 0 {
                 let right = right >> channel & 1 != 0;
                 motor.last_step = Some(LastStep { cycle, right, min: f64::INFINITY, max: f64::NEG_INFINITY });
-                motor.tail.clear();
+                motor.candidates.clear();
             }
         }
     }

@@ -179,7 +179,7 @@ impl Plant {
             h,
             point: 0,
             levels: Levels::RESET,
-            current: SignalChain::new(&setup.current_sensor, h, supply.i_load),
+            current: SignalChain::new(&setup.current_sensor, h, supply.current),
             encoders: setup.motors.iter().enumerate().map(encoder).collect(),
             encoder_period: setup.encoder.period_steps,
             encoder_wait: setup.encoder.period_steps,
@@ -207,7 +207,7 @@ impl Plant {
         let (was_powered, is_powered) = (before.has(Levels::EN), record.levels.has(Levels::EN));
         if was_powered != is_powered {
             for (motor, lost) in self.motors.iter_mut().zip(&mut self.lost) {
-                motor.advance(offset, self.supply.v, was_powered);
+                motor.advance(offset, self.supply.voltage, was_powered);
                 if is_powered {
                     motor.driver.power_up();
                     lost.power_up(motor.driver.command() - motor.state.x);
@@ -224,7 +224,7 @@ impl Plant {
         observer.steps(cycle, rises, record.levels.dir());
         for (channel, motor) in self.motors.iter_mut().enumerate() {
             if rises >> channel & 1 != 0 {
-                motor.advance(offset, self.supply.v, is_powered);
+                motor.advance(offset, self.supply.voltage, is_powered);
                 motor.driver.step(record.levels.dir() >> channel & 1 != 0);
             }
         }
@@ -239,15 +239,15 @@ impl Plant {
 
     /// Runs to the next grid point.
     fn grid_step(&mut self, observer: &mut dyn Observer) {
-        let (powered, bus) = (self.levels.has(Levels::EN), self.supply.v);
+        let (powered, supply_v) = (self.levels.has(Levels::EN), self.supply.voltage);
         let mut energy = 0.0;
         for motor in &mut self.motors {
-            energy += motor.finish(bus, powered);
+            energy += motor.finish(supply_v, powered);
         }
         self.supply.advance(energy);
         self.point += self.step_cycles;
         self.events =
-            PointEvents { converted: self.current.advance(self.supply.i_load), ..PointEvents::default() };
+            PointEvents { converted: self.current.advance(self.supply.current), ..PointEvents::default() };
         self.read_encoders_and_accelerometers();
         if powered {
             for (channel, (motor, lost)) in self.motors.iter_mut().zip(&mut self.lost).enumerate() {
@@ -291,7 +291,7 @@ impl Plant {
 
     fn digest_point(&mut self) {
         self.digest.cycle(self.point);
-        self.digest.numbers(&[self.supply.v, self.supply.i_load]);
+        self.digest.numbers(&[self.supply.voltage, self.supply.current]);
         for motor in &self.motors {
             let State { x, w, i_a, i_b, .. } = motor.state;
             self.digest.numbers(&[x, w, i_a, i_b]);
@@ -342,17 +342,17 @@ impl Plant {
         self.levels.has(Levels::EN)
     }
 
-    /// Bus voltage in V.
-    pub const fn bus_v(&self) -> f64 {
-        self.supply.v
+    /// Supply voltage at the drivers in V.
+    pub const fn supply_v(&self) -> f64 {
+        self.supply.voltage
     }
 
-    /// Current of all drivers in the last grid step, in A.
-    pub const fn load_a(&self) -> f64 {
-        self.supply.i_load
+    /// Supply current of all drivers in the last grid step, in A.
+    pub const fn supply_a(&self) -> f64 {
+        self.supply.current
     }
 
-    /// Whether the bus is at 1/16 of the source voltage or less.
+    /// Whether the supply voltage is at 1/16 of the source voltage or less.
     pub const fn has_collapsed(&self) -> bool {
         self.supply.has_collapsed
     }

@@ -19,8 +19,8 @@ pub(crate) struct Rotor {
     step_cycles: u64,
     clock_hz: f64,
     passed: u64,
-    /// Energy taken from the bus in this grid step, in J.
-    from_bus: f64,
+    /// Energy taken from the supply in this grid step, in J.
+    from_supply: f64,
 }
 
 /// `value` moved toward 0 by `by`, at most to 0.
@@ -44,7 +44,7 @@ impl Rotor {
         let whole = Span::new(&constants, step_cycles.into(), clock_hz);
         let energy = EnergyAccount::new(&constants, &state);
         let step_cycles = step_cycles.into();
-        Self { constants, driver, state, energy, whole, step_cycles, clock_hz, passed: 0, from_bus: 0.0 }
+        Self { constants, driver, state, energy, whole, step_cycles, clock_hz, passed: 0, from_supply: 0.0 }
     }
 
     /// Power of the windings at the start, in W.
@@ -53,29 +53,29 @@ impl Rotor {
         self.constants.r * (i_a * i_a + i_b * i_b)
     }
 
-    pub(crate) fn advance(&mut self, to: u64, bus: f64, powered: bool) {
+    pub(crate) fn advance(&mut self, to: u64, supply_v: f64, powered: bool) {
         if to > self.passed {
             let span = Span::new(&self.constants, to - self.passed, self.clock_hz);
-            self.step(&span, bus, powered);
+            self.step(&span, supply_v, powered);
             self.passed = to;
         }
     }
 
-    /// Advances to the next grid point; returns the energy taken from the bus since the last one, in J.
-    pub(crate) fn finish(&mut self, bus: f64, powered: bool) -> f64 {
+    /// Advances to the next grid point; returns the energy taken from the supply since the last one, in J.
+    pub(crate) fn finish(&mut self, supply_v: f64, powered: bool) -> f64 {
         if self.passed == 0 {
             let whole = self.whole;
-            self.step(&whole, bus, powered);
+            self.step(&whole, supply_v, powered);
         } else {
-            self.advance(self.step_cycles, bus, powered);
+            self.advance(self.step_cycles, supply_v, powered);
         }
         self.passed = 0;
-        core::mem::take(&mut self.from_bus)
+        core::mem::take(&mut self.from_supply)
     }
 
     // A call per motor-step takes 1.7 times as long in `plant_averaged`.
     #[inline(always)]
-    fn step(&mut self, span: &Span, bus: f64, powered: bool) {
+    fn step(&mut self, span: &Span, supply_v: f64, powered: bool) {
         let Self { constants, driver, state, .. } = self;
         let State { x, w, i_a, i_b, .. } = *state;
         let Span { h, hh, ra, .. } = *span;
@@ -84,8 +84,8 @@ impl Rotor {
         let y = x + w * hh;
         let (sn, cs) = sincos(y + 0.5);
         let (k_a, k_b) = (-(k * sn), k * cs);
-        let a = driver.voltage(0, &PhaseInput { e: k_a * w, i: i_a, r, ra, bus }, powered);
-        let b = driver.voltage(1, &PhaseInput { e: k_b * w, i: i_b, r, ra, bus }, powered);
+        let a = driver.voltage(0, &PhaseInput { e: k_a * w, i: i_a, r, ra, supply_v }, powered);
+        let b = driver.voltage(1, &PhaseInput { e: k_b * w, i: i_b, r, ra, supply_v }, powered);
         let (u_a, u_b) = (a.v - r * i_a, b.v - r * i_b);
         let (a_a, b_a) = if a.is_open { (0.0, 0.0) } else { (span.a, span.b) };
         let (a_b, b_b) = if b.is_open { (0.0, 0.0) } else { (span.a, span.b) };
@@ -146,12 +146,12 @@ impl Rotor {
         let taken = if powered {
             (a.v * mean_a + b.v * mean_b) * h
         } else {
-            let whole = bus + driver.diodes;
-            let taken = (a.v * mean_a * bus / whole + b.v * mean_b * bus / whole) * h;
+            let whole = supply_v + driver.diodes;
+            let taken = (a.v * mean_a * supply_v / whole + b.v * mean_b * supply_v / whole) * h;
             energy.diodes += taken - (a.v * mean_a + b.v * mean_b) * h;
             taken
         };
-        self.from_bus += taken;
+        self.from_supply += taken;
         energy.bus += taken;
         energy.friction += (free - w_1) * den * w_m;
         energy.viscous += h * constants.b * w_m * w_m;

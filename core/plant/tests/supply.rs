@@ -24,10 +24,10 @@ fn a_bus_at_rest_stays_where_the_source_and_the_windings_have_it() {
     // 3.6 W and 20 mA through 0.5 ohm.
     let setup = buffered(Supply { source_ohm: 0.5, idle_ma: 20.0, ..Supply::default() });
     let mut plant = Plant::new(&setup).expect("it holds");
-    let v = plant.bus_v();
+    let v = plant.supply_v();
     near((24.0 - v) / 0.5, 3.6 / v + 0.02, 1e-9);
     plant.advance(1_600_000, &mut ());
-    near(plant.bus_v(), v, 1e-9);
+    near(plant.supply_v(), v, 1e-9);
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn a_source_that_takes_nothing_back_lets_the_bus_rise_when_the_motors_brake() {
         // The windings' current has gone back into the buffer: L*I^2/2 of both together.
         assert_eq!((plant.state(0).expect("a motor").i_a, plant.state(0).expect("a motor").i_b), (0.0, 0.0));
         near(plant.energy(0).expect("a motor").error(), 0.0, 1e-5);
-        measures.result(&plant).bus_v.max
+        measures.result(&plant).supply_v.max
     };
     // 4.8 mJ into 100 uF at 24 V, less what the windings and diodes lose: some 1.8 V.
     near(max(false), 25.7, 0.2);
@@ -57,7 +57,7 @@ fn a_supply_that_is_too_weak_for_its_motors_collapses_and_says_when() {
     let result = measures.result(&plant);
     let at = result.collapsed.expect("it collapses");
     assert!(at > 16_000 && at < 160_000, "{at}");
-    assert_eq!(result.bus_v.min, 1.5);
+    assert_eq!(result.supply_v.min, 1.5);
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn the_supply_current_dips_and_peaks_while_a_phase_turns_round() {
         &locked(),
         &records(&[vec![1600]], 16),
         32_000,
-        &mut Each(|plant: &Plant| currents.push(plant.load_a())),
+        &mut Each(|plant: &Plant| currents.push(plant.supply_a())),
     );
     near_part(currents[100], 0.150, 0.01);
     let after = currents.iter().copied();
@@ -345,4 +345,19 @@ fn samples_of_a_known_shape_have_the_settling_time_that_they_were_made_with() {
     let late: Vec<Sample> = (0..20).map(|k| sample(k * 10, if k < 10 { 1.0 } else { 2.0 })).collect();
     let found = StepResponse::of(&late, 0, 95, 50, 0.2).expect("samples");
     assert_eq!((found.reached, found.settled), (None, None));
+}
+
+#[test]
+fn overshoot_is_unknown_until_the_first_grid_point_after_a_step() {
+    let mut plant = Plant::new(&locked()).expect("a valid setup");
+    let mut measures = Measures::new(&plant);
+    for record in records(&[vec![1600]], 16) {
+        plant.record(record, &mut measures);
+        if record.cycle.0 == 1600 {
+            assert_eq!(measures.result(&plant).motors[0].overshoot, None);
+        }
+    }
+    plant.advance(1604, &mut measures);
+    let overshoot = measures.result(&plant).motors[0].overshoot.expect("a grid point follows the step");
+    assert!(overshoot < 0.0, "{overshoot}: the rotor has not arrived");
 }

@@ -4,7 +4,7 @@ use crate::table::registers;
 
 registers! {
     /// Identifies the peripheral: the letters "STEP", the first in the highest byte.
-    id: "ID" [0x000; 1], Ro, Is(0x5354_4550) => {
+    id: "ID" [0x000; 1], Ro, Fixed(0x5354_4550) => {
         /// Constant.
         MAGIC [0..=31] {
             /// "STEP".
@@ -13,7 +13,7 @@ registers! {
     }
 
     /// Properties of this peripheral.
-    capabilities: "CAPABILITIES" [0x004; 1], Ro, Built => {
+    capabilities: "CAPABILITIES" [0x004; 1], Ro, Configured => {
         /// Version of the register map.
         VERSION [0..=7] {
             /// The version described here.
@@ -40,20 +40,20 @@ registers! {
     }
 
     /// The peripheral's clock. All times in this map are in its cycles.
-    clock_hz: "CLOCK_HZ" [0x008; 1], Ro, Built => {
+    clock_hz: "CLOCK_HZ" [0x008; 1], Ro, Configured => {
         /// Cycles per second.
         HZ [0..=31] {}
     }
 
     /// Length of the self-test after reset.
-    boot: "BOOT" [0x00C; 1], Ro, Built => {
+    boot: "BOOT" [0x00C; 1], Ro, Configured => {
         /// Cycles; 0 if there is no self-test.
         CYCLES [0..=31] {}
     }
 
     /// Commands, one per bit. If several bits are set, only the command of the highest is executed, so STOP
     /// always has priority. RESULT reports the outcome. Writing 0 has no effect.
-    control: "CONTROL" [0x010; 1], Wo, Is(0) => {
+    control: "CONTROL" [0x010; 1], Wo, Fixed(0) => {
         /// Applies the timing registers. Refused with BUSY while a tick runs or waits, and with BAD_TIMING if
         /// the timing is invalid; a refused command changes nothing.
         COMMIT [0..=0] {}
@@ -66,7 +66,7 @@ registers! {
     }
 
     /// Outcome of the last command: the last write to CONTROL (except of 0) or PUSH.
-    result: "RESULT" [0x014; 1], Ro, Is(0) => {
+    result: "RESULT" [0x014; 1], Ro, Fixed(0) => {
         /// Why the command was refused. 2 to 5 are the reasons of the framed protocol.
         CODE [0..=7] {
             /// Done.
@@ -85,7 +85,7 @@ registers! {
     }
 
     /// State of the peripheral. The low three bytes are those of a reply of the framed protocol.
-    status: "STATUS" [0x018; 1], Ro, Built => {
+    status: "STATUS" [0x018; 1], Ro, Configured => {
         /// The state; if several apply, the first in the order STOPPED, BUSY, MOVING, READY.
         STATE [0..=7] {
             /// In the self-test.
@@ -110,7 +110,7 @@ registers! {
     }
 
     /// Fault flags. They stay set until a one is written to them, or a RESYNC arrives on a framed line.
-    faults: "FAULTS" [0x01C; 1], W1c, Is(0) => {
+    faults: "FAULTS" [0x01C; 1], W1c, Fixed(0) => {
         /// A stop bit on the line was low.
         FRAMING [0..=0] {}
         /// A pause cut a raw packet short, or a sequence of bytes was no frame.
@@ -134,49 +134,49 @@ registers! {
     }
 
     /// Ticks that have ended since reset, without those aborted by STOP.
-    ticks_done: "TICKS_DONE" [0x020; 1], Ro, Is(0) => {
+    ticks_done: "TICKS_DONE" [0x020; 1], Ro, Fixed(0) => {
         /// Ticks, wrapping after 4 294 967 295.
         COUNT [0..=31] {}
     }
 
     /// M: slots per tick, the maximum steps of a channel in one tick.
-    slots: "SLOTS" [0x040; 1], Rw, Built => {
+    slots: "SLOTS" [0x040; 1], Rw, Configured => {
         /// 1 to 127.
         COUNT [0..=31] {}
     }
 
     /// Ts: length of a slot. A tick lasts M*Ts.
-    step_period: "STEP_PERIOD" [0x044; 1], Rw, Built => {
+    step_period: "STEP_PERIOD" [0x044; 1], Rw, Configured => {
         /// 2 to 1 000 000 000 cycles.
         CYCLES [0..=31] {}
     }
 
     /// W: time that STEP stays high.
-    pulse_width: "PULSE_WIDTH" [0x048; 1], Rw, Built => {
+    pulse_width: "PULSE_WIDTH" [0x048; 1], Rw, Configured => {
         /// 1 to 1 000 000 000 cycles.
         CYCLES [0..=31] {}
     }
 
     /// D: time from the start of a slot, where DIR may change, to the rise of STEP.
-    dir_setup: "DIR_SETUP" [0x04C; 1], Rw, Built => {
+    dir_setup: "DIR_SETUP" [0x04C; 1], Rw, Configured => {
         /// 0 to 1 000 000 000 cycles.
         CYCLES [0..=31] {}
     }
 
     /// H: time that DIR is held after STEP has fallen.
-    dir_hold: "DIR_HOLD" [0x050; 1], Rw, Built => {
+    dir_hold: "DIR_HOLD" [0x050; 1], Rw, Configured => {
         /// 0 to 1 000 000 000 cycles.
         CYCLES [0..=31] {}
     }
 
     /// dp: settling time of the drivers' supply current after a step, the maximum distance of staggered pulses.
-    settle: "SETTLE" [0x054; 1], Rw, Built => {
+    settle: "SETTLE" [0x054; 1], Rw, Configured => {
         /// 0 to 1 000 000 000 cycles.
         CYCLES [0..=31] {}
     }
 
     /// Times of the pulses in a tick.
-    mode: "MODE" [0x058; 1], Rw, Built => {
+    mode: "MODE" [0x058; 1], Rw, Configured => {
         /// Where the steps of a channel go within a tick.
         DISTRIBUTION [0..=0] {
             /// Into the tick's first slots.
@@ -195,7 +195,7 @@ registers! {
 
     /// Commands of the next tick, four channels each: ORDERS0 has channels 0 to 3 and so on. A byte has the
     /// direction in bit 7 (1 = right) and the steps in bits 6..0. Bytes of unused channels read as 0. PUSH keeps the commands.
-    orders: "ORDERS" [0x060; 4], Rw, Is(0) => {
+    orders: "ORDERS" [0x060; 4], Rw, Fixed(0) => {
         /// Channel 4n of ORDERSn.
         FIRST [0..=7] {}
         /// Channel 4n + 1.
@@ -208,11 +208,11 @@ registers! {
 
     /// Writing any value queues a tick with the commands. RESULT reports the outcome, checked in the order STOPPED,
     /// BUSY, TOO_MANY_STEPS, QUEUE_FULL.
-    push: "PUSH" [0x070; 1], Wo, Is(0) => {}
+    push: "PUSH" [0x070; 1], Wo, Fixed(0) => {}
 
     /// Position counters of channels 0 to 15: +1 per rising STEP edge with DIR right, -1 with DIR left. Those of
     /// unused channels stay 0.
-    position: "POSITION" [0x080; 16], Ro, Is(0) => {
+    position: "POSITION" [0x080; 16], Ro, Fixed(0) => {
         /// Steps, two's complement, wrapping.
         STEPS [0..=31] {}
     }

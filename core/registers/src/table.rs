@@ -4,7 +4,7 @@
 //! use stepscope_registers::{MAP, status, table::Access};
 //!
 //! // A field extracts and inserts its value.
-//! assert_eq!(status::STATE.of(status::STATE.with(status::STATE_MOVING)), status::STATE_MOVING);
+//! assert_eq!(status::STATE.extract(status::STATE.insert(status::STATE_MOVING)), status::STATE_MOVING);
 //! // The map as data: the registers that can be written.
 //! let mut writable = MAP.iter().filter(|register| register.access != Access::Ro);
 //! assert!(writable.any(|register| register.name == "CONTROL"));
@@ -39,9 +39,9 @@ impl Access {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reset {
     /// The same value in every peripheral.
-    Is(u32),
+    Fixed(u32),
     /// Set by the configuration that the peripheral was built with.
-    Built,
+    Configured,
 }
 
 /// A register, or an array of registers.
@@ -92,17 +92,17 @@ pub struct NamedValue {
 impl Field {
     /// A one in every bit of the field.
     pub const fn mask(&self) -> u32 {
-        u32::MAX >> (31 - (self.high - self.low)) << self.low
+        (u32::MAX >> (31 - (self.high - self.low))) << self.low
     }
 
     /// The field's value in the register value `register`.
-    pub const fn of(&self, register: u32) -> u32 {
+    pub const fn extract(&self, register: u32) -> u32 {
         (register & self.mask()) >> self.low
     }
 
     /// `value` at the position of the field; excess bits are dropped.
-    pub const fn with(&self, value: u32) -> u32 {
-        value << self.low & self.mask()
+    pub const fn insert(&self, value: u32) -> u32 {
+        (value << self.low) & self.mask()
     }
 
     /// Whether any of its bits is set in the register value `register`.

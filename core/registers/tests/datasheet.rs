@@ -24,8 +24,8 @@ fn offset(register: &Register) -> String {
 
 fn reset(register: &Register) -> String {
     match register.reset {
-        Reset::Is(value) => format!("0x{value:08X}"),
-        Reset::Built => "as built".to_owned(),
+        Reset::Fixed(value) => format!("0x{value:08X}"),
+        Reset::Configured => "as built".to_owned(),
     }
 }
 
@@ -127,10 +127,10 @@ fn registers_and_fields_are_in_order_and_do_not_overlap() {
             bit = field.high + 1;
             for value in field.values {
                 assert!(value.name.starts_with(field.name), "{}", value.name);
-                assert_eq!(field.of(field.with(value.value)), value.value, "{}", value.name);
+                assert_eq!(field.extract(field.insert(value.value)), value.value, "{}", value.name);
             }
         }
-        assert!(register.access != Access::W1c || register.reset == Reset::Is(0), "{}", register.name);
+        assert!(register.access != Access::W1c || register.reset == Reset::Fixed(0), "{}", register.name);
     }
 }
 
@@ -142,8 +142,8 @@ fn fields_extract_and_insert_their_bits() {
     for (low, high, mask, value) in rows {
         let field = field(low, high);
         assert_eq!(field.mask(), mask);
-        assert_eq!(field.of(field.with(value) | !mask), value);
-        assert_eq!(field.with(u32::MAX), mask);
+        assert_eq!(field.extract(field.insert(value) | !mask), value);
+        assert_eq!(field.insert(u32::MAX), mask);
         assert!(field.is_set(mask) && !field.is_set(!mask));
     }
 }

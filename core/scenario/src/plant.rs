@@ -6,6 +6,7 @@ use alloc::{format, vec::Vec};
 use stepscope_motion::mechanics::{Mechanics, Rotary};
 use stepscope_motion::motor::{Decay, Drive, Motor, Regulator};
 use stepscope_motion::{moves::Axis, plan_axis};
+use stepscope_peripheral::device::min_boot_time;
 use stepscope_peripheral::{config::Config, signal::MAX_CHANNELS, units::Cycles};
 use stepscope_plant::{Plant, Refusal, Refused, limits, parameters};
 
@@ -62,8 +63,7 @@ impl Scenario {
                 validator.add("plant.self_test", ValueError::Conflict { detail });
                 return;
             }
-            let needed =
-                1 + u64::from(config.channels()) * 24 * (config.tick().0 / u64::from(config.slots()));
+            let needed = min_boot_time(config).0;
             if config.boot().0 < needed {
                 let path = match index {
                     0 => "bus.self_test_cycles".to_string(),

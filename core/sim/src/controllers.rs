@@ -5,8 +5,7 @@ use alloc::boxed::Box;
 use stepscope_controller::StandAlone;
 use stepscope_peripheral::device::{Faults, SegmentEngine};
 use stepscope_peripheral::signal::{MAX_CHANNELS, Sink};
-use stepscope_peripheral::units::Cycles;
-use stepscope_peripheral::units::Instant;
+use stepscope_peripheral::units::{Cycles, Instant};
 
 /// Limits of a part of a run; by default none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +31,7 @@ pub(crate) enum Generator {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Controllers {
-    /// Remains before cycle 0 if another generator makes the edges.
+    /// Not run (stays at reset) unless `generator` is `Bus`.
     pub(crate) bus: Bus,
     pub(crate) generator: Generator,
     /// The first cycle that is not run; `None` to run until no event follows.
@@ -40,8 +39,8 @@ pub(crate) struct Controllers {
 }
 
 impl Controllers {
-    /// The first cycle that no controller has run.
-    pub(crate) fn reached(&self) -> Instant {
+    /// The first cycle that no controller has run. Controllers whose sinks paused may be behind it.
+    pub(crate) fn furthest_cycle(&self) -> Instant {
         match &self.generator {
             Generator::Bus => self.bus.now(),
             Generator::Segments(engine) => engine.now(),
@@ -50,22 +49,22 @@ impl Controllers {
     }
 
     /// Whether every controller has run to cycle `end`.
-    pub(crate) fn have_reached(&self, end: Instant) -> bool {
+    pub(crate) fn all_have_reached(&self, end: Instant) -> bool {
         match &self.generator {
             Generator::Bus => self.bus.has_reached(end),
-            _ => self.reached() >= end,
+            _ => self.furthest_cycle() >= end,
         }
     }
 
-    pub(crate) fn are_done(&self) -> bool {
-        self.end.map_or_else(|| self.at_rest(), |end| self.have_reached(end))
+    pub(crate) fn is_done(&self) -> bool {
+        self.end.map_or_else(|| self.is_idle(), |end| self.all_have_reached(end))
     }
 
-    pub(crate) fn at_rest(&self) -> bool {
+    pub(crate) fn is_idle(&self) -> bool {
         match &self.generator {
-            Generator::Bus => self.bus.is_over(),
-            Generator::Segments(engine) => engine.at_rest(),
-            Generator::StandAlone(machine) => machine.at_rest(),
+            Generator::Bus => self.bus.is_idle(),
+            Generator::Segments(engine) => engine.is_idle(),
+            Generator::StandAlone(machine) => machine.is_idle(),
         }
     }
 
@@ -79,11 +78,12 @@ impl Controllers {
         }
     }
 
+    /// Runs one cycle. The levels that the generators return also reach the sinks.
     pub(crate) fn clock(&mut self, sinks: &mut [impl Sink]) {
         match &mut self.generator {
             Generator::Bus => self.bus.clock(sinks),
-            Generator::Segments(engine) => drop(engine.clock(&mut sinks.first_mut())),
-            Generator::StandAlone(machine) => drop(machine.clock(&mut sinks.first_mut())),
+            Generator::Segments(engine) => _ = engine.clock(&mut sinks.first_mut()),
+            Generator::StandAlone(machine) => _ = machine.clock(&mut sinks.first_mut()),
         }
     }
 
@@ -103,32 +103,31 @@ impl Controllers {
         }
     }
 
-    /// The cycle after the last event, if the run is idle. The last edge was in `last`.
-    pub(crate) fn idle_from(&self, last: Instant) -> Option<Instant> {
-        self.at_rest().then(|| match &self.generator {
-            Generator::Bus => self.bus.idle_from(),
-            Generator::Segments(_) => last.next(),
-            Generator::StandAlone(machine) => machine.idle_from(),
+    /// The cycle after the last event, if the run is idle. `last_edge` is only needed for segments.
+    pub(crate) fn idle_since(&self, last_edge: Instant) -> Option<Instant> {
+        self.is_idle().then(|| match &self.generator {
+            Generator::Bus => self.bus.idle_since(),
+            Generator::Segments(_) => last_edge.next(),
+            Generator::StandAlone(machine) => machine.idle_since(),
         })
     }
 
-    /// Reports an overload at the end of the latest cycle. Returns whether the controller supports it; stand-alone ones
-    /// do not.
-    pub(crate) fn overload(&mut self, controller: usize, sink: &mut impl Sink) -> bool {
+    /// Reports an overload at the end of the latest cycle. Returns false for stand-alone controllers.
+    pub(crate) fn stop_on_overload(&mut self, controller: usize, sink: &mut impl Sink) -> bool {
         match &mut self.generator {
             Generator::Bus => {
                 let device = self.bus.device_mut(controller);
-                device.map(|device| device.overload(sink)).is_some()
+                device.map(|device| device.stop_on_overload(sink)).is_some()
             }
             Generator::Segments(engine) => {
-                engine.overload();
+                engine.stop_on_overload();
                 true
             }
             Generator::StandAlone(_) => false,
         }
     }
 
-    /// Reports the result of a self-test to a controller.
+    /// Reports the result of a self-test to a controller. Only controllers on a line have a self-test.
     pub(crate) fn set_settling_time(&mut self, controller: usize, time: Option<Cycles>) {
         if let Some(device) = self.bus.device_mut(controller) {
             device.set_settling_time(time);

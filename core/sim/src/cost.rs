@@ -35,11 +35,11 @@ pub struct Cost {
     /// Cycle after which no event follows, or the given end.
     pub end_cycle: u64,
     /// Grid steps of all plants, multiplied by their motors; 0 without a plant.
-    pub motor_steps: u64,
+    pub motor_grid_steps: u64,
 }
 
-/// Motor steps that run without a confirmation.
-pub const BUDGET_MOTOR_STEPS: u64 = 40_000_000;
+/// Grid steps of all motors that run without a confirmation.
+pub const BUDGET_MOTOR_GRID_STEPS: u64 = 40_000_000;
 
 /// Records that run without a confirmation.
 pub const BUDGET_RECORDS: u64 = 4_000_000;
@@ -47,7 +47,7 @@ pub const BUDGET_RECORDS: u64 = 4_000_000;
 impl Cost {
     /// Whether a run needs a confirmation.
     pub const fn is_over_budget(&self) -> bool {
-        self.records > BUDGET_RECORDS || self.motor_steps > BUDGET_MOTOR_STEPS
+        self.records > BUDGET_RECORDS || self.motor_grid_steps > BUDGET_MOTOR_GRID_STEPS
     }
 
     pub(super) fn of(checked: &CheckedScenario, controllers: &[ControllerPlan], schedule: &Schedule) -> Self {
@@ -66,7 +66,7 @@ impl Cost {
                 || last_cycle(schedule, checked, controllers).max(sends.end_cycle),
                 |Cycles(run)| run,
             ),
-            motor_steps: 0,
+            motor_grid_steps: 0,
         }
     }
 
@@ -82,7 +82,7 @@ impl Cost {
         let steps = plants.setups.iter().map(|setup| {
             (end_cycle / u64::from(setup.grid_cycles())).saturating_mul(setup.motors.len() as u64)
         });
-        let motor_steps = steps.fold(0, u64::saturating_add);
+        let motor_grid_steps = steps.fold(0, u64::saturating_add);
         // EN and STEP fall at an overload; a host may enable the drivers again.
         let overloads: u64 =
             plants.setups.iter().map(|setup| u64::from(setup.protection.is_some()) * (1 + self.sends)).sum();
@@ -92,12 +92,13 @@ impl Cost {
         } else {
             0
         };
-        Self { end_cycle, motor_steps, records: self.records + tests + overloads, ..self }
+        Self { end_cycle, motor_grid_steps, records: self.records + tests + overloads, ..self }
     }
 
     pub(super) fn of_segments(segments: &CheckedSegments, run: Option<Cycles>) -> Self {
         let end_cycle = run.map_or(segments.end().0 + 1, |Cycles(run)| run);
-        Self { records: segments.max_records().min(end_cycle), sends: 0, bytes: 0, end_cycle, motor_steps: 0 }
+        let records = segments.max_records().min(end_cycle);
+        Self { records, sends: 0, bytes: 0, end_cycle, motor_grid_steps: 0 }
     }
 }
 

@@ -2,24 +2,26 @@
 
 use crate::controller_plan::{self, ControllerPlan};
 use crate::controllers::{Controllers, Generator};
-use crate::hosts::framed_host::{Conversation, FramedHost, Progress};
+use crate::hosts::framed_host::{Conversation, Progress};
 use crate::plant::attached::AttachedPlants;
 use crate::{cost::Cost, line::bus::Bus, run::Run};
-use alloc::{boxed::Box, rc::Rc, vec::Vec};
+use alloc::{boxed::Box, rc::Rc, vec, vec::Vec};
 use core::slice;
 use stepscope_controller::StandAlone;
 use stepscope_motion::AxisPlan;
 use stepscope_peripheral::device::{Device, SegmentEngine};
-use stepscope_peripheral::signal::{Sink, Unpaused};
+use stepscope_peripheral::signal::{MAX_CHANNELS, Sink, Unpaused};
 use stepscope_peripheral::wire::{Line, Schedule};
 use stepscope_peripheral::{config::Config, segment::CheckedSegments, units::Instant};
 use stepscope_scenario::{CheckedScenario, END_OF_TIME, Problem, Scenario, ValueError};
 
-/// Maximum bytes that a host may have to send: the most ticks of 16 channels on an addressed raw line.
-const MAX_LINE_BYTES: u64 = 2_000_000 * 17;
-
-/// Maximum grid steps of a run, of all motors together.
-const MAX_MOTOR_STEPS: u64 = 10_000_000_000;
+const MAX_TICKS: u64 = 2_000_000;
+/// The address, and one byte per channel.
+const MAX_PACKET_BYTES: u64 = 1 + MAX_CHANNELS as u64;
+/// Maximum bytes that a host may have to send.
+const MAX_LINE_BYTES: u64 = MAX_TICKS * MAX_PACKET_BYTES;
+/// Maximum grid steps of a run, multiplied by the number of motors.
+const MAX_MOTOR_GRID_STEPS: u64 = 10_000_000_000;
 
 /// A validated scenario with planned motions and encoded packets.
 ///
@@ -39,14 +41,44 @@ const MAX_MOTOR_STEPS: u64 = 10_000_000_000;
 #[derive(Clone, Debug)]
 pub struct Experiment {
     checked: CheckedScenario,
-    /// Invariant: one at least, the scenario's own first.
+    /// Never empty. The scenario's own controller is first.
     controllers: Vec<ControllerPlan>,
     /// What the host sends without waiting for replies.
     schedule: Rc<Schedule>,
-    /// `None` unless segments run the scenario; then nothing is sent.
+    /// The segment lists, if segments generate the steps. The host sends nothing in that case.
     segments: Option<Rc<CheckedSegments>>,
     line_load: Option<f64>,
     cost: Cost,
+}
+
+/// A scenario with valid fields, a plan per controller, and the load of the line.
+type Validated = (CheckedScenario, Vec<ControllerPlan>, Option<f64>);
+
+/// Errors: the problems of all fields and motions. Those of the line need valid fields, those of ticks also valid motions.
+fn validate(scenario: &Scenario) -> Result<Validated, Vec<Problem>> {
+    let mut problems = Vec::new();
+    let checked = collect(scenario.check(), &mut problems);
+    let plans = collect(controller_plan::plans(scenario), &mut problems);
+    let Some(checked) = checked else { return Err(problems) };
+    let line_load = controller_plan::line_load(&checked).map_err(|problem| vec![problem]);
+    let line_load = collect(line_load, &mut problems);
+    let Some(plans) = plans else { return Err(problems) };
+    let controllers = collect(controller_plan::controller_plans(&checked, plans), &mut problems);
+    let (Some(controllers), Some(line_load)) = (controllers, line_load) else { return Err(problems) };
+    debug_assert!(!controllers.is_empty() && controllers.len() == checked.configs.len());
+    Ok((checked, controllers, line_load))
+}
+
+/// The value; `None` if there are problems. Adds those of fields that have none yet.
+fn collect<T>(result: Result<T, Vec<Problem>>, problems: &mut Vec<Problem>) -> Option<T> {
+    let found = match result {
+        Ok(value) => return Some(value),
+        Err(found) => found,
+    };
+    let is_new = |problem: &Problem| problems.iter().all(|known| known.path != problem.path);
+    let new: Vec<_> = found.into_iter().filter(is_new).collect();
+    problems.extend(new);
+    None
 }
 
 fn check_cost(path: &'static str, given: u64, max: u64, of: &'static str) -> Result<(), Vec<Problem>> {
@@ -54,65 +86,52 @@ fn check_cost(path: &'static str, given: u64, max: u64, of: &'static str) -> Res
         return Ok(());
     }
     let cause = ValueError::TooMuch { given: given as f64, max: max as f64, of };
-    Err(alloc::vec![Problem::new(path, cause)])
+    Err(vec![Problem::new(path, cause)])
+}
+
+/// Whether the field at `path` is the one at `parent` or a part of it.
+fn is_within(path: &str, parent: &str) -> bool {
+    path.strip_prefix(parent).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 impl Experiment {
     /// Validates a scenario and prepares its run. Errors: every problem, each with its path.
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
-        let mut problems = Vec::new();
-        let checked = scenario.check().map_err(|found| problems.extend(found)).ok();
-        let plans = controller_plan::plans(scenario);
-        let is_new = |problem: &Problem| problems.iter().all(|known: &Problem| known.path != problem.path);
-        let plans = plans.map_err(|found| found.into_iter().filter(is_new).collect::<Vec<_>>());
-        let plans = plans.map_err(|found| problems.extend(found)).ok();
-        let Some(mut checked) = checked else { return Err(problems) };
-        let line_load = controller_plan::line_load(&checked).map_err(|problem| problems.push(problem)).ok();
-        let Some(plans) = plans else { return Err(problems) };
-        let controllers = match controller_plan::controller_plans(&checked, plans) {
-            Ok(controllers) if problems.is_empty() => controllers,
-            result => {
-                problems.extend(result.err().unwrap_or_default());
-                return Err(problems);
-            }
-        };
-        debug_assert!(!controllers.is_empty() && controllers.len() == checked.configs.len());
+        let (mut checked, controllers, line_load) = validate(scenario)?;
         let (schedule, forced) = controller_plan::schedule(&checked, &controllers);
         checked.forced.extend(forced);
         let segments = controller_plan::segments(&checked, &controllers)?.map(Rc::new);
-        let cost = match &segments {
-            Some(segments) => Cost::of_segments(segments, checked.run),
-            None => Cost::of(&checked, &controllers, &schedule),
-        };
-        let cost = match &checked.stand_alone {
-            Some(stand_alone) => Cost::of_stand_alone(stand_alone, checked.run)?,
-            None => cost,
+        let cost = match (&checked.stand_alone, &segments) {
+            (Some(stand_alone), _) => Cost::of_stand_alone(stand_alone, checked.run)?,
+            (None, Some(segments)) => Cost::of_segments(segments, checked.run),
+            (None, None) => Cost::of(&checked, &controllers, &schedule),
         };
         let cost = cost.with_plants(&checked);
         check_cost("source", cost.bytes, MAX_LINE_BYTES, "bytes of all frames and their repetitions")?;
-        check_cost("plant.step_cycles", cost.motor_steps, MAX_MOTOR_STEPS, "motor-steps of the plant")?;
+        let grid_steps = cost.motor_grid_steps;
+        check_cost("plant.step_cycles", grid_steps, MAX_MOTOR_GRID_STEPS, "grid steps of all motors")?;
         check_cost("source", cost.end_cycle, END_OF_TIME, "cycles")?;
-        let line_load = line_load.flatten().filter(|_| controllers.iter().any(ControllerPlan::has_ticks));
+        let line_load = line_load.filter(|_| controllers.iter().any(ControllerPlan::has_ticks));
         Ok(Self { checked, controllers, schedule: Rc::new(schedule), segments, line_load, cost })
     }
 
     /// Reads, validates and prepares a scenario. Errors: every problem of types and numbers.
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
-        let (scenario, unread) = Scenario::from_json_lenient(text);
-        Self::of_lenient(&scenario, unread)
+        let (scenario, unreadable) = Scenario::from_json_lenient(text);
+        Self::from_partial(&scenario, unreadable)
     }
 
-    /// Validates a scenario whose unreadable fields, in `unread`, have their defaults. Rules about several fields are not
-    /// checked then. Errors: `unread` and all other problems.
-    pub fn of_lenient(scenario: &Scenario, unread: Vec<Problem>) -> Result<Self, Vec<Problem>> {
+    /// Validates a scenario. If `unreadable` is not empty, those fields have their defaults, so rules about several fields are
+    /// skipped. Errors: `unreadable` and all other problems.
+    pub fn from_partial(scenario: &Scenario, unreadable: Vec<Problem>) -> Result<Self, Vec<Problem>> {
         let validated = Self::new(scenario);
-        if unread.is_empty() {
+        if unreadable.is_empty() {
             return validated;
         }
-        let mut problems = unread.clone();
+        let mut problems = unreadable.clone();
         problems.extend(validated.err().unwrap_or_default().into_iter().filter(|problem| {
             !problem.cause.depends_on_several_fields()
-                && !unread.iter().any(|bad| problem.path.starts_with(&bad.path))
+                && !unreadable.iter().any(|bad| is_within(&problem.path, &bad.path))
         }));
         Err(problems)
     }
@@ -154,12 +173,12 @@ impl Experiment {
 
     /// The host's progress with controller `index`; `None` without ticks or if the host does not wait for replies.
     pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
-        run.host()?.progress().nth(self.job(index)?)
+        run.host()?.progress().nth(self.job_index(index)?)
     }
 
     /// Ticks acknowledged by controller `index`; `None` as [`Self::host_progress`].
     pub fn host_acknowledged(&self, run: &Run, index: usize) -> Option<u32> {
-        run.host()?.acknowledged().nth(self.job(index)?)
+        run.host()?.acknowledged().nth(self.job_index(index)?)
     }
 
     /// The host's conversation for a real line from cycle `start` on, with an opening tick; `None` if the host does not
@@ -171,8 +190,8 @@ impl Experiment {
         waits.then(|| Conversation::new(jobs(), &self.checked.host, bit, start).with_opening_tick())
     }
 
-    /// The index of controller `index` among those that have ticks.
-    pub fn job(&self, index: usize) -> Option<usize> {
+    /// Position of controller `index` among those with ticks: the index of its job in the host. `None` without ticks.
+    pub fn job_index(&self, index: usize) -> Option<usize> {
         self.controllers.get(index).filter(|plan| plan.has_ticks())?;
         Some(self.controllers.iter().take(index).filter(|plan| plan.has_ticks()).count())
     }
@@ -227,7 +246,8 @@ impl Experiment {
         let CheckedScenario { baud, forced, run, .. } = &self.checked;
         let clock_hz = self.config().clock_hz();
         let line = Line::new(Rc::clone(&self.schedule), forced, clock_hz, *baud);
-        let host = self.host();
+        let waits = self.checked.waits_for_replies();
+        let host = waits.then(|| controller_plan::framed_host(&self.checked, &self.controllers));
         Run {
             controllers: Controllers {
                 bus: Bus::new(line, host, self.configs().map(|config| self.device(config)).collect()),
@@ -248,12 +268,6 @@ impl Experiment {
         self.checked.plants.as_ref()
     }
 
-    fn host(&self) -> Option<FramedHost> {
-        self.checked
-            .waits_for_replies()
-            .then(|| controller_plan::framed_host(&self.checked, &self.controllers))
-    }
-
     /// Runs to the end; `sink` receives the trace of the first controller.
     pub fn run(&self, sink: &mut impl Sink) -> Run {
         self.run_each(slice::from_mut(sink))
@@ -263,9 +277,8 @@ impl Experiment {
     pub fn run_each(&self, sinks: &mut [impl Sink]) -> Run {
         let mut run = self.start();
         let mut sinks: Vec<_> = sinks.iter_mut().map(Unpaused).collect();
-        while !run.is_done() {
-            run.run_to(run.controllers.end.unwrap_or(Instant::NEVER), &mut sinks);
-        }
+        run.run_to(run.controllers.end.unwrap_or(Instant::NEVER), &mut sinks);
+        debug_assert!(run.is_done());
         run
     }
 
@@ -300,20 +313,20 @@ mod tests {
     }
 
     #[test]
-    fn problems_of_types_and_numbers_come_together_and_none_is_invented() {
+    fn problems_of_types_and_numbers_are_reported_together() {
         let rows: &[(&str, &[&str])] = &[
             ("{}", &[]),
-            // Too slow a line does not hide too fast a motion.
+            // The problems of the line and of the motion are both reported.
             (
                 r#"{"line":{"baud":1200},"source":{"motion":{"axes":[{"moves":[{"constant":{"speed":{"steps_s":100000}}}]}]}}}"#,
                 &["line.baud", "source.motion.axes[0]"],
             ),
-            // Packets of two bytes are not validated by the default of a field that cannot be read.
+            // An unreadable `channels` must not cause errors in the packets.
             (
                 r#"{"bus":{"channels":"2"},"source":{"packets":{"packets":["8001","0180"]}}}"#,
                 &["bus.channels"],
             ),
-            // Entries that cannot be read do not move the others.
+            // An unreadable entry keeps its index.
             (
                 r#"{"source":{"motion":{"axes":[{"moves":["bad",{"dwell":{"duration_s":-1}}]}]}}}"#,
                 &["source.motion.axes[0].moves[0]", "source.motion.axes[0].moves[1].dwell.duration_s"],
@@ -326,7 +339,16 @@ mod tests {
     }
 
     #[test]
-    fn many_wrong_types_are_reported_in_few_readings() {
+    fn only_parts_of_an_unreadable_field_are_within_it() {
+        for (path, expected) in
+            [("line.host", true), ("line.host.a", true), ("line.host[0]", true), ("line.host_x", false)]
+        {
+            assert_eq!(is_within(path, "line.host"), expected, "{path}");
+        }
+    }
+
+    #[test]
+    fn the_number_of_type_errors_is_limited() {
         let json = alloc::format!(
             r#"{{"source":{{"motion":{{"axes":[{{"moves":[{}5]}}]}}}}}}"#,
             "{},".repeat(11_000)

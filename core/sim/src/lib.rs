@@ -38,7 +38,7 @@ mod summary;
 mod validated;
 
 pub use controllers::RunLimits;
-pub use cost::{BUDGET_MOTOR_STEPS, BUDGET_RECORDS, Cost};
+pub use cost::{BUDGET_MOTOR_GRID_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::Experiment;
 pub use faults::{fault_sweep, power_cut};
 pub use hosts::script::{replayed, scripted};

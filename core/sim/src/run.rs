@@ -92,7 +92,7 @@ impl Run {
         if let Some(ended) = self.plants.as_ref().and_then(|plants| plants.ended) {
             return Cycles(ended.0);
         }
-        Cycles(self.controllers.reached().0)
+        Cycles(self.controllers.furthest_cycle().0)
     }
 
     /// Whether the run has ended.
@@ -100,7 +100,7 @@ impl Run {
         if let Some(plants) = &self.plants {
             return plants.ended.is_some();
         }
-        self.controllers.are_done()
+        self.controllers.is_done()
     }
 
     /// Runs until the first controller has written `records` more, or to the end; true at the end.
@@ -135,7 +135,7 @@ impl Run {
 
     /// Whether no event follows without input.
     pub(crate) fn is_idle(&self) -> bool {
-        self.controllers.at_rest()
+        self.controllers.is_idle()
     }
 
     /// Runs to the limits or to the end, with a sink and an observer of the plant per controller; true at the end.

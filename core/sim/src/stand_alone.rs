@@ -29,7 +29,7 @@ impl Cost {
             None if is_short => tried.now().0.min(END_OF_TIME),
             None => END_OF_TIME,
         };
-        Ok(Self { records, sends: 0, bytes: 0, end_cycle, motor_steps: 0 })
+        Ok(Self { records, sends: 0, bytes: 0, end_cycle, motor_grid_steps: 0 })
     }
 }
 

@@ -10,7 +10,7 @@ use stepscope_scenario::{Problem, Scenario, Source};
 #[derive(Clone, Debug)]
 pub struct ValidatedScenario {
     scenario: Rc<Scenario>,
-    unread: Rc<[Problem]>,
+    unreadable: Rc<[Problem]>,
     result: Result<Rc<Experiment>, Rc<[Problem]>>,
 }
 
@@ -30,13 +30,13 @@ pub struct SelectedAxis<'a> {
 impl ValidatedScenario {
     /// Reads and validates a text. A field that cannot be read has its default.
     pub fn from_json(text: &str) -> Self {
-        let (scenario, unread) = Scenario::from_json_lenient(text);
-        Self::of(scenario, unread)
+        let (scenario, unreadable) = Scenario::from_json_lenient(text);
+        Self::of(scenario, unreadable)
     }
 
-    fn of(scenario: Scenario, unread: Vec<Problem>) -> Self {
-        let result = Experiment::of_lenient(&scenario, unread.clone()).map(Rc::new).map_err(Rc::from);
-        Self { scenario: Rc::new(scenario), unread: unread.into(), result }
+    fn of(scenario: Scenario, unreadable: Vec<Problem>) -> Self {
+        let result = Experiment::from_partial(&scenario, unreadable.clone()).map(Rc::new).map_err(Rc::from);
+        Self { scenario: Rc::new(scenario), unreadable: unreadable.into(), result }
     }
 
     /// The scenario.
@@ -45,8 +45,8 @@ impl ValidatedScenario {
     }
 
     /// The problems of fields that could not be read.
-    pub fn unread(&self) -> &[Problem] {
-        &self.unread
+    pub fn unreadable(&self) -> &[Problem] {
+        &self.unreadable
     }
 
     /// The experiment to run. Errors: every problem of the scenario, each with its path.

@@ -207,7 +207,7 @@ impl Kernels {
             Kernel::Optimum(_) => (1, None),
             Kernel::Sweep => (u64::from(SWEEP_ROWS), None),
             Kernel::SineCosine | Kernel::PlantAveraged | Kernel::PlantChopper => (MOTOR_STEPS, None),
-            Kernel::PlantRun => (self.plant_run.cost().motor_steps, None),
+            Kernel::PlantRun => (self.plant_run.cost().motor_grid_steps, None),
             Kernel::Write | Kernel::Copy => (result, None),
             Kernel::Motors16 | Kernel::Motors512 => (result, None),
             Kernel::Digest => return self.work(Kernel::Stored),

@@ -100,7 +100,7 @@ impl Board {
 
 impl Chip for Board {
     fn now(&mut self) -> Instant {
-        self.clock.tick(RELOAD - SYST::get_current())
+        self.clock.extend(RELOAD - SYST::get_current())
     }
 
     fn inputs(&mut self) -> RawLevels {

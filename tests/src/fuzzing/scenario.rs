@@ -25,7 +25,7 @@ const MAX_SEGMENT_RECORDS: u64 = 16 << 48;
 /// Runs that cost no more records and cycles than these are made, and made again clock by clock.
 const RUN_RECORDS: u64 = 5_000;
 const RUN_CYCLES: u64 = 5_000;
-/// So are runs whose plants cost no more motor-steps.
+/// So are runs whose plants cost no more grid steps of all motors.
 const RUN_MOTOR_STEPS: u64 = 20_000;
 
 /// Short runs with a plant: two motors that chop on a weak supply, one of them on a spring, all sensors, and a threshold that
@@ -53,7 +53,7 @@ pub fn check(data: &[u8]) {
     let Ok(text) = str::from_utf8(data) else { return };
     let Ok(experiment) = judge(text) else { return };
     let cost = experiment.cost();
-    if cost.records <= RUN_RECORDS && cost.motor_steps <= RUN_MOTOR_STEPS {
+    if cost.records <= RUN_RECORDS && cost.motor_grid_steps <= RUN_MOTOR_STEPS {
         let (scenario, _) = Scenario::from_json_lenient(text);
         // An overload and a self-test change what a device would do by itself.
         let plant = scenario.plant.as_ref();
@@ -66,7 +66,7 @@ pub fn check(data: &[u8]) {
 }
 
 /// Runs the plants of an experiment that has some, and again in slices: every number is one, both runs have the same bits, and
-/// what the plants did can be told. Their motor-steps, for whom it matters that runs were made.
+/// what the plants did can be told. Returns the grid steps of all motors, so that a caller can check that runs were made.
 ///
 /// # Panics
 /// Where a property is broken.
@@ -80,7 +80,7 @@ pub fn drive(experiment: &Experiment) -> u64 {
     };
     whole.finish();
     while !sliced.advance(Cycles(997)) {}
-    let mut motor_steps = 0;
+    let mut motor_grid_steps = 0;
     let both = whole.results().into_iter().zip(sliced.results()).zip(&plants.setups);
     for (index, ((result, again), setup)) in both.enumerate() {
         assert_eq!((result.cycle, result.digest), (again.cycle, again.digest), "in slices");
@@ -93,12 +93,12 @@ pub fn drive(experiment: &Experiment) -> u64 {
             assert!(!verdict(motor, setup.clock_hz).is_empty());
             let _ = too_coarse(setup, channel, motor);
         }
-        motor_steps += result.cycle / u64::from(setup.grid_cycles()) * setup.motors.len() as u64;
+        motor_grid_steps += result.cycle / u64::from(setup.grid_cycles()) * setup.motors.len() as u64;
         if let Some(plant) = whole.plant(index) {
             assert_eq!(table_head(plant).split(',').count(), table_row(plant).split(',').count());
         }
     }
-    motor_steps
+    motor_grid_steps
 }
 
 /// The presets, the golden cases and some plants.
@@ -159,7 +159,7 @@ mod tests {
         for text in PLANTS {
             let experiment = judge(text).unwrap_or_else(|problems| panic!("{text}: {problems:?}"));
             let cost = experiment.cost();
-            assert!(cost.records <= RUN_RECORDS && cost.motor_steps <= RUN_MOTOR_STEPS, "{cost:?}");
+            assert!(cost.records <= RUN_RECORDS && cost.motor_grid_steps <= RUN_MOTOR_STEPS, "{cost:?}");
             assert!(drive(&experiment) > 100);
             check(text.as_bytes());
         }

@@ -47,10 +47,10 @@ impl ValidatedScenario {
     /// # Errors
     /// If the scenario is invalid, or too long for a link.
     pub fn link(&self) -> Result<String, JsError> {
-        if self.0.unread().is_empty() {
+        if self.0.unreadable().is_empty() {
             Ok(pack(&self.0.scenario().to_compact_json())?)
         } else {
-            Err(LinkError::Scenario(self.0.unread().to_vec()).into())
+            Err(LinkError::Scenario(self.0.unreadable().to_vec()).into())
         }
     }
 }

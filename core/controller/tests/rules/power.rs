@@ -142,7 +142,7 @@ fn a_run_with_the_maximum_sequence_number_ends() {
         let mut machine = StandAlone::new(&setup.check().unwrap());
         let mut trace: Vec<Record> = Vec::new();
         machine.run(Instant::NEVER, &mut trace);
-        assert!(machine.at_rest() && machine.position(0) == Some(5), "{policy:?}: no record can be newer");
+        assert!(machine.is_idle() && machine.position(0) == Some(5), "{policy:?}: no record can be newer");
         let now = machine.now();
         machine.run(Instant(now.0 + 1000), &mut trace);
         assert_eq!(machine.now(), Instant(now.0 + 1000));

@@ -175,7 +175,7 @@ fn an_endless_jump_ends_the_run_and_names_its_groups() {
     let work = run.machine.too_many_groups().expect("the program is endless");
     assert_eq!((work.first_group, work.last_group, work.is_endless), (2, 4, true));
     assert!(work.to_string().contains("groups 2 to 4 repeat without end"), "{work}");
-    assert!(run.machine.at_rest() && run.machine.cycles_until_event().is_none());
+    assert!(run.machine.is_idle() && run.machine.cycles_until_event().is_none());
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn seeds() -> std::ops::Range<u64> {
 fn compare(seed: u64, slow: &StandAlone, fast: &StandAlone) {
     assert_eq!(slow.now(), fast.now(), "seed {seed}: the end");
     assert_eq!(slow.too_many_groups(), fast.too_many_groups(), "seed {seed}: work");
-    assert_eq!(slow.at_rest(), fast.at_rest(), "seed {seed}: rest");
+    assert_eq!(slow.is_idle(), fast.is_idle(), "seed {seed}: rest");
     assert_eq!(slow.positions(), fast.positions(), "seed {seed}: positions");
     for i in 0..slow.checked().controllers().len() {
         assert_eq!(slow.panel(i), fast.panel(i), "seed {seed}: panel {i}");
@@ -43,11 +43,11 @@ fn cycle_by_cycle_and_event_by_event_runs_are_equal() {
         let checked =
             common::setup(seed).check().unwrap_or_else(|refused| panic!("seed {seed}: {refused:?}"));
         let (mut slow, mut slow_trace) = (StandAlone::new(&checked), Vec::<Record>::new());
-        while slow.now() < Instant(MAX_CYCLES) && !slow.at_rest() {
+        while slow.now() < Instant(MAX_CYCLES) && !slow.is_idle() {
             slow.clock(&mut slow_trace);
         }
         let (mut fast, mut fast_trace) = (StandAlone::new(&checked), Vec::<Record>::new());
-        fast.run(if slow.at_rest() { Instant::NEVER } else { Instant(MAX_CYCLES) }, &mut fast_trace);
+        fast.run(if slow.is_idle() { Instant::NEVER } else { Instant(MAX_CYCLES) }, &mut fast_trace);
         assert_eq!(slow_trace, fast_trace, "seed {seed}: trace");
         compare(seed, &slow, &fast);
         for record in fast.panel(0) {

@@ -3,7 +3,7 @@
 //! Three arrays `NAME_interval`, `NAME_count` and `NAME_add` take exactly the bytes of their numbers on every
 //! machine. A comment at the head of the file explains them.
 
-use crate::export::plain_text::is_unsafe;
+use crate::export::plain_text::needs_escape;
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::{self, Write};
 use stepscope_motion::round_half_up;
@@ -84,7 +84,7 @@ impl Source<'_> {
         let error = self.table.error;
         // Keeps the text from ending the comment, continuing the line, or reordering it.
         let plain = |c: char| {
-            if is_unsafe(c) || matches!(c, '*' | '\\') { ' ' } else { c }
+            if needs_escape(c) || matches!(c, '*' | '\\') { ' ' } else { c }
         };
         write!(out, "{prefix}")?;
         self.title.chars().take(200).map(plain).try_for_each(|c| out.write_char(c))?;

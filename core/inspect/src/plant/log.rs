@@ -83,7 +83,7 @@ impl Observer for PlantLog {
 
 fn read(plant: &Plant, values: &mut [f64]) {
     let (supply, motors) = values.split_at_mut(SUPPLY.len());
-    supply.copy_from_slice(&[plant.bus_v(), plant.load_a(), plant.current_sensor().filtered()]);
+    supply.copy_from_slice(&[plant.supply_v(), plant.supply_a(), plant.current_sensor().filtered()]);
     for (channel, values) in motors.chunks_exact_mut(MOTOR.len()).enumerate() {
         let Some(state) = plant.state(channel) else { continue };
         let (command, code) = (plant.command(channel), f64::from(plant.encoder(channel)));

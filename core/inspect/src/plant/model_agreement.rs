@@ -107,7 +107,7 @@ pub fn agreement(
         (true, true) | (false, false) => None,
         (true, false) => {
             let rate = slips.rate(channel, clock_hz);
-            Some(why_it_slips(machine, demand, motor, rate, (result.bus_v.min, setup.supply.supply_v)))
+            Some(why_it_slips(machine, demand, motor, rate, (result.supply_v.min, setup.supply.supply_v)))
         }
         (false, true) => Some(why_it_follows(machine, demand, found)),
     };

@@ -56,7 +56,7 @@ pub fn energy_left_over(found: &MotorResult) -> Option<String> {
 pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
     let lost = motor.lost.unsigned_abs();
     let ms = |cycle: u64| cycle as f64 / f64::from(clock_hz) * 1e3;
-    let step = motor.first_slip_step.unwrap_or(0);
+    let step = motor.steps_until_first_slip.unwrap_or(0);
     match motor.slips.first() {
         Some(slip) if lost == 0 => {
             format!("slips and recovers; first at {:.2} ms in step {step}", ms(slip.cycle))
@@ -82,7 +82,7 @@ pub fn names(plant: &Plant) -> Vec<String> {
 /// The plant's values at its point, in V, A, codes, full steps and full steps/s.
 pub fn values(plant: &Plant) -> Vec<f64> {
     let sensor = plant.current_sensor();
-    let mut values = vec![plant.bus_v(), plant.load_a(), sensor.filtered(), f64::from(sensor.code())];
+    let mut values = vec![plant.supply_v(), plant.supply_a(), sensor.filtered(), f64::from(sensor.code())];
     for channel in 0..plant.motors() {
         let Some(state) = plant.state(channel) else { continue };
         let (command, lost) = (plant.command(channel), plant.lost(channel) as f64);

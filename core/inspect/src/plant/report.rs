@@ -111,18 +111,18 @@ fn summary_of(
     clock_hz: f64,
     overload_cycle: Option<u64>,
 ) -> PlantSummary {
-    let (load, bus) = (&result.load_a, &result.bus_v);
+    let (current, voltage) = (&result.supply_a, &result.supply_v);
     PlantSummary {
         controller,
         digest: format!("{:016x}", result.digest),
         cycle: result.cycle,
-        load_least_a: load.min,
-        load_greatest_a: load.max,
-        load_rms_a: load.rms(),
+        load_least_a: current.min,
+        load_greatest_a: current.max,
+        load_rms_a: current.rms(),
         deviation_above_a: result.deviation.map(|found| found.above_a),
         deviation_below_a: result.deviation.map(|found| found.below_a),
-        bus_least_v: bus.min,
-        bus_greatest_v: bus.max,
+        bus_least_v: voltage.min,
+        bus_greatest_v: voltage.max,
         collapsed_at_s: result.collapsed.map(|cycle| cycle as f64 / clock_hz),
         overload_cycle,
     }

@@ -20,7 +20,7 @@ impl Device {
             Framing::Raw(unpacker) => unpacker.deadline(),
             Framing::Framed(_) => Instant::NEVER,
         };
-        let receiver = self.receiver.deadline(self.before(), self.rx);
+        let receiver = self.receiver.deadline(self.last_cycle(), self.rx);
         let Executor { sequencer, transceiver, .. } = &self.executor;
         sequencer.deadline().min(transceiver.deadline()).min(gap).min(receiver)
     }
@@ -64,13 +64,13 @@ impl Device {
 
     /// Makes `now` the next cycle if nothing can change any more; else does nothing.
     pub fn finish(&mut self, now: Instant) {
-        if self.at_rest() {
+        if self.is_idle() {
             self.now = now;
         }
     }
 
     /// Whether nothing can change any more while the line keeps its level.
-    pub fn at_rest(&self) -> bool {
+    pub fn is_idle(&self) -> bool {
         self.deadline() == Instant::NEVER
     }
 }

@@ -41,7 +41,7 @@ impl Timing {
             dir_setup: bus.dir_setup_cycles,
             dir_hold: bus.dir_hold_cycles,
             settle: bus.settle_cycles,
-            mode: map::mode::DISTRIBUTION.with(distribution) | map::mode::PULSES.with(pulses),
+            mode: map::mode::DISTRIBUTION.insert(distribution) | map::mode::PULSES.insert(pulses),
         }
     }
 
@@ -53,12 +53,12 @@ impl Timing {
             pulse_width_cycles: self.pulse_width,
             dir_setup_cycles: self.dir_setup,
             dir_hold_cycles: self.dir_hold,
-            distribution: match map::mode::DISTRIBUTION.of(self.mode) {
+            distribution: match map::mode::DISTRIBUTION.extract(self.mode) {
                 map::mode::DISTRIBUTION_BURST => Distribution::Burst,
                 map::mode::DISTRIBUTION_SPREAD => Distribution::Spread,
                 _ => return None,
             },
-            pulse_phasing: match map::mode::PULSES.of(self.mode) {
+            pulse_phasing: match map::mode::PULSES.extract(self.mode) {
                 map::mode::PULSES_SIMULTANEOUS => PulsePhasing::Simultaneous,
                 map::mode::PULSES_STAGGERED => PulsePhasing::Staggered,
                 _ => return None,

@@ -41,7 +41,7 @@ mod tests;
 pub use faults::Faults;
 pub use model_bus::ModelBus;
 pub use segments::SegmentEngine;
-pub use self_test::SelfTest;
+pub use self_test::{SelfTest, min_boot_time};
 
 use crate::config::{Config, Protocol};
 use crate::protocol::{Reason, Status};
@@ -190,12 +190,14 @@ impl Device {
     /// The status that a reply in the last cycle would contain; `None` on a raw line.
     pub fn status(&self) -> Option<Status> {
         match &self.framing {
-            Framing::Framed(protocol) => Some(self.executor.status(self.before(), protocol.expected_seq())),
+            Framing::Framed(protocol) => {
+                Some(self.executor.status(self.last_cycle(), protocol.expected_seq()))
+            }
             Framing::Raw(_) => None,
         }
     }
 
-    const fn before(&self) -> Instant {
+    const fn last_cycle(&self) -> Instant {
         Instant(self.now.0.saturating_sub(1))
     }
 
@@ -217,7 +219,7 @@ impl Device {
         }
         let transceiver = &self.executor.transceiver;
         let (levels, next) = transceiver.in_cycle(self.now);
-        let byte = self.receiver.deadline(self.before(), line || levels.has(Levels::DE));
+        let byte = self.receiver.deadline(self.last_cycle(), line || levels.has(Levels::DE));
         // A byte causes a reply after the turnaround at the earliest.
         let reply = if byte == Instant::NEVER { byte } else { byte + transceiver.turnaround() };
         next.min(reply)

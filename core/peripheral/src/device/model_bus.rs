@@ -18,7 +18,7 @@ use stepscope_registers::RegisterBus;
 /// let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
 /// let mut bus = ModelBus::new(&config, Cycles(8), Vec::<Record>::new());
 /// bus.write(control::OFFSET, control::STOP.mask());
-/// assert_eq!(status::STATE.of(bus.read(status::OFFSET)), status::STATE_STOPPED);
+/// assert_eq!(status::STATE.extract(bus.read(status::OFFSET)), status::STATE_STOPPED);
 /// assert_eq!(bus.device().now().0, 16);
 /// ```
 #[derive(Clone, Debug)]
@@ -104,7 +104,7 @@ mod tests {
             bus.write(orders::OFFSET, 0x82);
             bus.write(push::OFFSET, 0);
             assert_eq!(bus.device().now(), Instant(2 * access));
-            assert_eq!(status::STATE.of(bus.read(status::OFFSET)), status::STATE_MOVING);
+            assert_eq!(status::STATE.extract(bus.read(status::OFFSET)), status::STATE_MOVING);
             bus.wait(Cycles(1000));
             assert_eq!(bus.device().now(), Instant(3 * access + 1000));
             bus.wait(config.tick());

@@ -61,7 +61,7 @@ impl Device {
             return;
         }
         // `finish` must not set a time before an access.
-        self.last_active = self.before();
+        self.last_active = self.last_cycle();
         if let Some(index) = index(&map::orders::REGISTER, offset) {
             return self.latches.set_commands(index, value);
         }
@@ -83,7 +83,7 @@ impl Device {
 
     /// Executes the highest command bit of CONTROL.
     fn command(&mut self, value: u32, sink: &mut impl Sink) {
-        let now = self.before();
+        let now = self.last_cycle();
         self.latches.result = if map::control::STOP.is_set(value) {
             self.executor.stop(now);
             sink.event(now, Event::Stopped);
@@ -114,7 +114,7 @@ impl Device {
     }
 
     fn push(&mut self, sink: &mut impl Sink) {
-        let (now, commands) = (self.before(), self.latches.commands);
+        let (now, commands) = (self.last_cycle(), self.latches.commands);
         self.latches.result = match self.executor.admit(now, &commands, 1) {
             Ok(()) => {
                 self.executor.sequencer.push(now, commands);
@@ -131,14 +131,14 @@ impl Device {
             Framing::Framed(controller) => controller.expected_seq(),
             Framing::Raw(_) => 0,
         };
-        let status = self.executor.status(self.before(), expected_seq);
+        let status = self.executor.status(self.last_cycle(), expected_seq);
         let pending = self.latches.timing != Timing::of(&self.latches.config);
-        STATE.with(status.state as u32)
-            | FREE.with(status.free.into())
-            | EXPECTED_SEQ.with(expected_seq.into())
-            | MOVING.with(self.executor.sequencer.is_moving().into())
-            | EN.with((self.executor.transceiver.levels() & Levels::EN != 0).into())
-            | PENDING.with(pending.into())
+        STATE.insert(status.state as u32)
+            | FREE.insert(status.free.into())
+            | EXPECTED_SEQ.insert(expected_seq.into())
+            | MOVING.insert(self.executor.sequencer.is_moving().into())
+            | EN.insert((self.executor.transceiver.levels() & Levels::EN != 0).into())
+            | PENDING.insert(pending.into())
     }
 }
 
@@ -152,11 +152,11 @@ fn capabilities(config: &Config) -> u32 {
         Protocol::Raw => map::capabilities::PROTOCOL_RAW,
         Protocol::Framed => map::capabilities::PROTOCOL_FRAMED,
     };
-    VERSION.with(map::capabilities::VERSION_1)
-        | CHANNELS.with(config.channels().into())
-        | QUEUE_DEPTH.with(config.queue_depth().into())
-        | DIR_LINE.with(dir_line)
-        | PROTOCOL.with(protocol)
+    VERSION.insert(map::capabilities::VERSION_1)
+        | CHANNELS.insert(config.channels().into())
+        | QUEUE_DEPTH.insert(config.queue_depth().into())
+        | DIR_LINE.insert(dir_line)
+        | PROTOCOL.insert(protocol)
 }
 
 #[cfg(test)]

@@ -179,7 +179,7 @@ impl SegmentEngine {
 
     /// The supply current was too high for too long: in the next cycle EN and STEP fall, DIR keeps its level, and
     /// no step follows. Has no effect before cycle 0.
-    pub fn overload(&mut self) {
+    pub fn stop_on_overload(&mut self) {
         if self.now == Instant::RESET || self.overloaded {
             return;
         }
@@ -191,7 +191,7 @@ impl SegmentEngine {
         self.deadline = self.now;
     }
 
-    /// OVERLOAD after [`Self::overload`], else none.
+    /// OVERLOAD after [`Self::stop_on_overload`], else none.
     pub const fn faults(&self) -> Faults {
         if self.overloaded { Faults::OVERLOAD } else { Faults::from_bits(0) }
     }
@@ -226,7 +226,7 @@ impl SegmentEngine {
     }
 
     /// Whether nothing can change any more.
-    pub const fn at_rest(&self) -> bool {
+    pub const fn is_idle(&self) -> bool {
         self.deadline.0 == Instant::NEVER.0
     }
 }

@@ -315,8 +315,8 @@ fn reading_what_is_driven_next_has_no_side_effect() {
         assert_eq!(drives, levels.has(Levels::DE).then(|| levels.has(Levels::TX)), "in {now:?}");
         driving += u32::from(drives.is_some());
         let command = match now.0 {
-            at if at == disable => map::control::DISABLE.with(1),
-            at if at == enable => map::control::ENABLE.with(1),
+            at if at == disable => map::control::DISABLE.insert(1),
+            at if at == enable => map::control::ENABLE.insert(1),
             _ => continue,
         };
         let _ = devices[1].driven();

@@ -1,10 +1,11 @@
 //! The receiver of the serial line (DESIGN A4): 8N1, one sample per bit.
 //!
 //! ```text
-//! low at t: samples again at t + floor(B/2); high is a glitch, and the receiver is armed from the next cycle
+//! B: cycles per bit, t: first low cycle
+//! start bit sampled at t + floor(B/2). A high level then is a glitch: the receiver is armed again in the next cycle.
 //! data bit i at t + floor(B/2) + (i+1)*B, stop bit at t + floor(B/2) + 9*B
-//! stop bit high: the byte is delivered in that cycle, armed from the next
-//! stop bit low: framing error; armed from the cycle after the first later one that is high
+//! stop bit high: the byte is delivered in that cycle; the receiver is armed again in the next cycle.
+//! stop bit low: framing error. The receiver is armed one cycle after the line is high again.
 //! ```
 //!
 //! ```
@@ -41,7 +42,7 @@ enum State {
         byte: u8,
     },
     /// After a framing error: waits for the line to be high.
-    Broken,
+    AwaitingHigh,
 }
 
 /// Receives bytes from the level of the line.
@@ -68,19 +69,20 @@ impl Receiver {
         match self.state {
             State::Sampling { at, .. } => at,
             State::Armed if !rx => now.next(),
-            State::Broken if rx => now.next(),
-            State::Armed | State::Broken => Instant::NEVER,
+            State::AwaitingHigh if rx => now.next(),
+            State::Armed | State::AwaitingHigh => Instant::NEVER,
         }
     }
 
-    /// Runs cycle `now` with the line at `rx`. No cycle of [`Self::deadline`] may be skipped.
+    /// Runs cycle `now` with the line at `rx`. Must be called in every cycle that [`Self::deadline`] returns; others may be
+    /// skipped.
     pub fn clock(&mut self, now: Instant, rx: bool) -> Option<RxEvent> {
         match self.state {
             State::Armed if !rx => {
                 self.start = now;
                 self.state = State::Sampling { bit: 0, at: now + Cycles(self.bit_cycles.0 / 2), byte: 0 };
             }
-            State::Broken if rx => self.state = State::Armed,
+            State::AwaitingHigh if rx => self.state = State::Armed,
             State::Sampling { bit, at, byte } if at == now => match (bit, rx) {
                 (0, true) => self.state = State::Armed,
                 (STOP, true) => {
@@ -88,7 +90,7 @@ impl Receiver {
                     return Some(RxEvent::Byte(byte));
                 }
                 (STOP, false) => {
-                    self.state = State::Broken;
+                    self.state = State::AwaitingHigh;
                     return Some(RxEvent::FramingError);
                 }
                 _ => {
@@ -96,7 +98,7 @@ impl Receiver {
                     self.state = State::Sampling { bit: bit + 1, at: at + self.bit_cycles, byte };
                 }
             },
-            State::Armed | State::Broken | State::Sampling { .. } => {}
+            State::Armed | State::AwaitingHigh | State::Sampling { .. } => {}
         }
         None
     }
@@ -139,7 +141,7 @@ mod tests {
             assert_eq!(receiver.clock(Instant(at), rx), None);
         }
         assert_eq!(receiver.clock(Instant(114), true), Some(RxEvent::Byte(0x55)));
-        // A line that stays low arms again once it is high.
+        // After a framing error the receiver waits for a high level.
         assert_eq!(receiver.clock(Instant(300), false), None);
         assert!((0..9).all(|bit| receiver.clock(Instant(305 + 11 * bit), false).is_none()));
         assert_eq!(receiver.clock(Instant(404), false), Some(RxEvent::FramingError));

@@ -65,9 +65,9 @@ impl Bus {
         self.nodes.get_mut(index).map(|node| &mut node.device)
     }
 
-    pub(crate) fn is_over(&self) -> bool {
+    pub(crate) fn is_idle(&self) -> bool {
         self.host.as_ref().is_none_or(FramedHost::is_over)
-            && self.devices().all(Device::at_rest)
+            && self.devices().all(Device::is_idle)
             && self.line.is_over()
     }
 
@@ -80,7 +80,7 @@ impl Bus {
     }
 
     /// The cycle after the last event.
-    pub(crate) fn idle_from(&self) -> Instant {
+    pub(crate) fn idle_since(&self) -> Instant {
         let device = self.devices().map(Device::last_active).max();
         let host = self.host.as_ref().map(FramedHost::last_active);
         device.max(host).unwrap_or(Instant::RESET).next()
@@ -136,15 +136,15 @@ impl Bus {
                 node.device.run(node.received_level, self.until, &mut sinks.get_mut(index));
             }
             let is_behind = |device: &Device| {
-                device.now() < self.until && !(self.until == Instant::NEVER && device.at_rest())
+                device.now() < self.until && !(self.until == Instant::NEVER && device.is_idle())
             };
             if self.devices().any(is_behind) {
                 break;
             }
             self.start = self.until;
         }
-        if end == Instant::NEVER && self.is_over() {
-            let now = self.idle_from();
+        if end == Instant::NEVER && self.is_idle() {
+            let now = self.idle_since();
             self.nodes.iter_mut().for_each(|node| node.device.finish(now));
             (self.start, self.until) = (now, Instant::NEVER);
         }

@@ -18,7 +18,7 @@ pub(crate) struct AttachedPlants {
     pub(crate) plants: Vec<AttachedPlant>,
     tail: Cycles,
     /// When a run without a given end became idle; an overload may end this.
-    idle_from: Option<Instant>,
+    idle_since: Option<Instant>,
     /// The stop that some controllers have not reached, because one paused after its maximum number of records.
     pending_stop: Option<Instant>,
     pub(crate) ended: Option<Instant>,
@@ -121,7 +121,7 @@ impl AttachedPlant {
         let rises = record.levels.step() & !self.levels.step();
         let switches_off = self.levels.has(Levels::EN) && !record.levels.has(Levels::EN);
         for (channel, test) in self.tests.iter().enumerate() {
-            if switches_off && record.cycle <= test.rise + test.step {
+            if switches_off && record.cycle <= test.rise + test.step_period {
                 self.tested &= !(1 << channel);
             }
             if rises >> channel & 1 != 0 && record.cycle == test.rise {
@@ -148,7 +148,7 @@ impl AttachedPlant {
     fn measured_settling_times(&mut self) -> Vec<Option<u64>> {
         let samples = core::mem::take(&mut self.feedback.samples);
         let settling_time = |(channel, test): (usize, &SelfTest)| {
-            let response = StepResponse::of(&samples, test.start.0, test.rise.0, test.step.0, SHARE)?;
+            let response = StepResponse::of(&samples, test.start.0, test.rise.0, test.step_period.0, SHARE)?;
             response.reached.filter(|_| self.tested >> channel & 1 != 0)
         };
         self.tests.iter().enumerate().map(settling_time).collect()
@@ -165,7 +165,7 @@ impl AttachedPlants {
                 .filter(|_| plants.self_test)
                 .map(|channel| SelfTest::of(config, channel))
                 .collect();
-            let samples_end = tests.last().map_or(0, |test| (test.rise + test.step).0);
+            let samples_end = tests.last().map_or(0, |test| (test.rise + test.step_period).0);
             let conversion_period = setup
                 .protection
                 .as_ref()
@@ -185,7 +185,7 @@ impl AttachedPlants {
                 overload_at: None,
             })
         });
-        Self { plants: plants.collect(), tail, idle_from: None, pending_stop: None, ended: None }
+        Self { plants: plants.collect(), tail, idle_since: None, pending_stop: None, ended: None }
     }
 
     fn plant_sinks<'a, S, O>(
@@ -211,12 +211,12 @@ impl AttachedPlants {
         observers: &mut [impl Observer],
     ) -> bool {
         let mut records = 0;
-        while self.ended.is_none() && run.reached() < limits.cycle && records < limits.records {
+        while self.ended.is_none() && run.furthest_cycle() < limits.cycle && records < limits.records {
             let stop = self.pending_stop.take().unwrap_or_else(|| self.next_stop(run)).min(limits.cycle);
             let mut plant_sinks = self.plant_sinks(limits.records - records, sinks, observers);
             run.run_to(stop, &mut plant_sinks);
             records += plant_sinks.iter().map(|sink| sink.records).max().unwrap_or(0);
-            if run.have_reached(stop) {
+            if run.all_have_reached(stop) {
                 self.after(run, None, sinks, observers);
             } else {
                 self.pending_stop = Some(stop);
@@ -226,7 +226,7 @@ impl AttachedPlants {
     }
 
     fn next_stop(&self, run: &Controllers) -> Instant {
-        let now = run.reached();
+        let now = run.furthest_cycle();
         let stops = self.plants.iter().map(|attached| attached.next_stop(now)).chain(run.end);
         stops.fold(Instant(now.0.saturating_add(IDLE_CHECK_CYCLES)), Instant::min)
     }
@@ -239,8 +239,8 @@ impl AttachedPlants {
     ) {
         run.clock(&mut self.plant_sinks(u64::MAX, sinks, observers));
         self.pending_stop = None;
-        let idle_from = self.idle_from.unwrap_or_else(|| run.reached());
-        self.after(run, Some(idle_from), sinks, observers);
+        let idle_since = self.idle_since.unwrap_or_else(|| run.furthest_cycle());
+        self.after(run, Some(idle_since), sinks, observers);
     }
 
     /// Applies the feedback of the plants in the cycle just run, and finds the end. `first_idle` is the first idle cycle if
@@ -252,13 +252,13 @@ impl AttachedPlants {
         sinks: &mut [impl Sink],
         observers: &mut [impl Observer],
     ) {
-        let now = run.reached();
+        let now = run.furthest_cycle();
         let idle = |this: &Self, run: &Controllers| {
             let last =
                 this.plants.iter().map(|attached| attached.last_record).max().unwrap_or(Instant::RESET);
-            run.idle_from(last).map(|idle_from| first_idle.unwrap_or(idle_from))
+            run.idle_since(last).map(|idle_since| first_idle.unwrap_or(idle_since))
         };
-        self.idle_from = idle(self, run);
+        self.idle_since = idle(self, run);
         let end = self.end(run);
         // The run went beyond its end.
         let is_past = end.is_some_and(|end| end < now);
@@ -267,7 +267,7 @@ impl AttachedPlants {
             for (index, mut sink) in plant_sinks.into_iter().enumerate() {
                 sink.feed_back(run, index, Instant(now.0 - 1));
             }
-            self.idle_from = idle(self, run);
+            self.idle_since = idle(self, run);
         }
         let is_end = end == Some(now) && (run.end.is_some() || idle(self, run).is_some());
         if let Some(end) = end.filter(|_| is_past || is_end) {
@@ -289,7 +289,7 @@ impl AttachedPlants {
         let boot_end = self.plants.iter().filter_map(|attached| attached.boot_end).max();
         let last_fall = self.plants.iter().filter_map(|attached| attached.last_fall).max();
         let min_end = boot_end.max(last_fall.map(|fall| fall + self.tail)).unwrap_or(Instant::RESET);
-        self.idle_from.map(|idle_from| idle_from.max(min_end))
+        self.idle_since.map(|idle_since| idle_since.max(min_end))
     }
 }
 
@@ -303,7 +303,7 @@ impl<S: Sink, O: Observer> PlantSink<'_, S, O> {
         if self.attached.feedback.overload.take() == Some(cycle.0) {
             let was_powered = self.attached.levels.has(Levels::EN);
             // If the drivers are off already, only the fault changes.
-            if run.overload(index, self) && was_powered {
+            if run.stop_on_overload(index, self) && was_powered {
                 self.attached.overload_at = Some(cycle.0);
             }
         }

@@ -169,7 +169,7 @@ impl LiveHost {
             if let Some((job, kind)) = self.host.pending_frame() {
                 let mut controllers = 0..self.experiment.controllers();
                 let controller =
-                    controllers.find(|&index| self.experiment.job(index) == Some(job)).unwrap_or(0);
+                    controllers.find(|&index| self.experiment.job_index(index) == Some(job)).unwrap_or(0);
                 if let Some((job, known)) = self.host.known().nth(job) {
                     self.twin.send(&bytes, now, (job.channels, known));
                 }

@@ -98,7 +98,7 @@ impl Bench {
     }
 
     fn status(&mut self, field: map::table::Field) -> u32 {
-        field.of(self.read(map::status::OFFSET))
+        field.extract(self.read(map::status::OFFSET))
     }
 
     /// Cycles and levels of the trace without RX, TX and DE, from a cycle on.
@@ -131,8 +131,8 @@ fn every_register_has_its_reset_value_and_access() {
         Bench::new(&Bus { channels: 16, ..BUS }, &SerialLine { baud: 100_000, ..SerialLine::default() });
     for (register, offset) in registers() {
         let expected = match register.reset {
-            Reset::Is(value) => value,
-            Reset::Built => {
+            Reset::Fixed(value) => value,
+            Reset::Configured => {
                 built.iter().find(|(name, _)| *name == register.name).expect("a listed register").1
             }
         };
@@ -362,11 +362,11 @@ fn after_commit_the_trace_equals_that_of_a_peripheral_with_this_timing() {
 #[test]
 fn commit_accepts_exactly_the_named_codes_of_mode() {
     for field in map::mode::REGISTER.fields {
-        for code in 0..=field.of(u32::MAX) {
+        for code in 0..=field.extract(u32::MAX) {
             let known = field.values.iter().any(|named| named.value == code);
             let expected = if known { (CODE_DONE, 0) } else { (CODE_BAD_TIMING, 1) };
             let mut bench = Bench::ready();
-            bench.write(map::mode::OFFSET, field.with(code));
+            bench.write(map::mode::OFFSET, field.insert(code));
             let found = (bench.command(COMMIT), bench.status(PENDING));
             assert_eq!(found, expected, "code {code} of {}", field.name);
         }

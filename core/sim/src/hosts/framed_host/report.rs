@@ -136,7 +136,7 @@ impl Report {
     pub fn new(experiment: &Experiment, host: &mut Conversation, stopped: bool) -> Self {
         let mut rows = Vec::new();
         for controller in 0..experiment.controllers() {
-            let Some(job) = experiment.job(controller) else { continue };
+            let Some(job) = experiment.job_index(controller) else { continue };
             let reported =
                 host.known().nth(job).map(|(reported, known)| (reported.address, reported.ticks(), *known));
             let ends = host.progress().nth(job).zip(host.acknowledged().nth(job));

@@ -52,7 +52,7 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
     let (mut device, mut ticks, mut frames) = (Device::new(&config), Executed::default(), Vec::new());
     for now in 0..1_000_000 {
         let now = Instant(now);
-        if host.is_over() && device.at_rest() {
+        if host.is_over() && device.is_idle() {
             let executed = ticks.0.iter().flat_map(|tick| tick[..2].to_vec()).collect();
             let progress = host.progress().next().expect("there is one job");
             return (executed, progress, host.counts(), frames);
