@@ -291,7 +291,7 @@ fn a_device_without_positions_is_not_reported_as_done() {
     let (code, out, err) = send(&file("old.json", FEW), &port, &[]);
     assert_eq!(code, Some(3), "{out}");
     assert!(out.contains("all ticks are counted, but the controller does not report positions"), "{out}");
-    assert!(out.contains("ticks 4 of 4 done") && err.contains("does not report its positions"), "{out}{err}");
+    assert!(out.contains("ticks 4 of 4 done") && err.contains("does not report positions"), "{out}{err}");
     device.join().expect("it ends");
 }
 
