@@ -88,11 +88,11 @@ function createDialog(page) {
     if (session.running === null) validate();
   }
 
-  /** Moves the dialog in front of the page, or aside, where the page stays usable. @param {boolean} inFront */
-  function setInFront(inFront) {
+  /** Moves the dialog in front of the page, or aside, where the page stays usable. @param {boolean} isModal */
+  function setInFront(isModal) {
     dialog.close();
-    dialog.classList.toggle("aside", !inFront);
-    if (inFront) dialog.showModal();
+    dialog.classList.toggle("aside", !isModal);
+    if (isModal) dialog.showModal();
     else dialog.show();
     show();
   }

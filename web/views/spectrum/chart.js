@@ -58,7 +58,7 @@ function logarithmicTicks(min, max, maxTicks) {
     const first = Math.ceil(min / step);
     ticks = Array.from({ length: Math.floor(max / step) - first + 1 }, (_, at) => (first + at) * step);
   }
-  return { ticks: ticks.map(frequency.positionOf), labels: ticks.map((hz) => si(hz, "Hz", 6)).join("\n") };
+  return { ticks: ticks.map(frequency.toPosition), labels: ticks.map((hz) => si(hz, "Hz", 6)).join("\n") };
 }
 
 /** @param {Spectra} spectra @param {Quantity} quantity @param {boolean} db @param {number} width  CSS pixels. */
@@ -73,7 +73,7 @@ export function spectrumChart(spectra, quantity, db, width) {
   const { start, end } = frequency.shown();
   const across = Math.max(1, width - GUTTER - 26);
   const pixel = (/** @type {number} */ n) =>
-    ((frequency.positionOf(n * fundamental_hz) - start) / (end - start)) * across;
+    ((frequency.toPosition(n * fundamental_hz) - start) / (end - start)) * across;
   const spacing = to > from ? pixel(to) - pixel(to - 1) : across;
   const stemWidth = Math.max(1.5, Math.min(5, spacing / 3));
   const stems = all.map(([name, spectrum]) => ({
@@ -99,7 +99,7 @@ export function spectrumChart(spectra, quantity, db, width) {
       color: color(name === "ideal" ? "--ideal" : "--actual"),
       opacity: 1,
       width: stemWidth,
-      x: shown.map((n) => frequency.positionOf(n * fundamental_hz)),
+      x: shown.map((n) => frequency.toPosition(n * fundamental_hz)),
       shape: {
         stems: {
           shift: all.length === 1 ? 0 : (name === "ideal" ? -1 : 1) * (stemWidth / 2 + 0.5),

@@ -33,11 +33,11 @@ export const frequency = {
     if (on === log) return;
     const { start, end } = hertz();
     log = on;
-    if (window) window = clamp({ start: positionOf(Math.max(start, minFrequency())), end: positionOf(end) });
+    if (window) window = clamp({ start: toPosition(Math.max(start, minFrequency())), end: toPosition(end) });
     before = [];
   },
 
-  positionOf,
+  toPosition,
   shown,
   hertz,
 
@@ -52,7 +52,7 @@ export const frequency = {
 
   /** Shows these frequencies, in Hz. @param {number} from @param {number} to */
   showHertz(from, to) {
-    frequency.show({ start: positionOf(Math.max(from, log ? minFrequency() : 0)), end: positionOf(to) });
+    frequency.show({ start: toPosition(Math.max(from, log ? minFrequency() : 0)), end: toPosition(to) });
   },
 
   back() {
@@ -69,7 +69,7 @@ function minFrequency() {
 }
 
 /** Position of a frequency on the axis. @param {number} hz */
-function positionOf(hz) {
+function toPosition(hz) {
   return log ? Math.log10(hz) : hz;
 }
 

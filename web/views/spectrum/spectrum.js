@@ -41,7 +41,7 @@ export function createSpectrumView({ dispatch, now }) {
   /** Position of the selected harmonic, if it is visible. */
   const anchor = () => {
     const { start, end } = frequency.shown();
-    const at = frequency.positionOf(rows[(now().harmonic ?? 0) - 1]?.hz ?? Number.NaN);
+    const at = frequency.toPosition(rows[(now().harmonic ?? 0) - 1]?.hz ?? Number.NaN);
     return at >= start && at <= end ? at : undefined;
   };
   const actions = {
@@ -93,7 +93,7 @@ export function createSpectrumView({ dispatch, now }) {
     let best = Math.round((frequency.isLog() ? 10 ** at : at) / rows[0].hz);
     best = Math.min(rows.length, Math.max(1, best));
     const near = (/** @type {number} */ n) =>
-      rows[n - 1] && Math.abs(frequency.positionOf(rows[n - 1].hz) - at) <= reach;
+      rows[n - 1] && Math.abs(frequency.toPosition(rows[n - 1].hz) - at) <= reach;
     for (const by of [-1, 1]) for (let n = best + by; near(n); n += by) if (strength(n) > strength(best)) best = n;
     point(best);
   }
@@ -104,7 +104,7 @@ export function createSpectrumView({ dispatch, now }) {
     if (rows.length === 0) return;
     point(to);
     const { start, end } = frequency.shown();
-    const at = frequency.positionOf(rows[to - 1].hz);
+    const at = frequency.toPosition(rows[to - 1].hz);
     if (at < start || at > end) show({ start: at - (end - start) / 2, end: at + (end - start) / 2 }, "follow");
   }
   const step = (/** @type {number} */ by) => goTo((now().harmonic ?? (by > 0 ? 0 : 2)) + by);
@@ -213,9 +213,9 @@ export function createSpectrumView({ dispatch, now }) {
       layer.context.globalAlpha = 0.3;
       layer.context.fillRect(px(picked.start), top, px(picked.end) - px(picked.start), bottom - top);
     }
-    const at = row ? frequency.positionOf(row.hz) : Number.NaN;
+    const at = row ? frequency.toPosition(row.hz) : Number.NaN;
     if (!(at >= start && at <= end)) return;
-    const half = Math.max(4, Math.min(12, px(frequency.positionOf((row?.hz ?? 0) + rows[0].hz)) - px(at)) / 2);
+    const half = Math.max(4, Math.min(12, px(frequency.toPosition((row?.hz ?? 0) + rows[0].hz)) - px(at)) / 2);
     layer.context.globalAlpha = 0.3;
     layer.context.fillRect(px(at) - half, top, 2 * half, bottom - top);
     layer.context.globalAlpha = 1;
