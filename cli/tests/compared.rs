@@ -30,8 +30,9 @@ fn events(name: &str, edit: impl Fn(usize, u64) -> Vec<(u64, bool)>) -> Vec<Stri
     fs::write(&own, text).expect("a file");
     let (code, out, err) = stepscope(&["capture", &own, "--against", &plan, "--within-us", "1000000"], "");
     assert!(code == Some(3) || code == Some(0), "{out}{err}");
-    let rows =
-        out.lines().filter(|row| row.starts_with("  ") && row.contains(", at ") && !row.contains("at most"));
+    let rows = out
+        .lines()
+        .filter(|row| row.starts_with("  ") && row.contains(", at ") && !row.contains("late: maximum"));
     rows.map(|row| row.trim().split(", at ").next().unwrap_or_default().to_owned()).collect()
 }
 
