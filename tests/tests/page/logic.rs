@@ -125,13 +125,13 @@ fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
         assert_eq!(texts("rx", "bits").len(), 10 * hex(reply - 1).len());
         let wanted = [
             ("rx", "kind: "),
-            ("rx", ", holds"),
-            ("rx", "end mark: 00"),
+            ("rx", ", valid"),
+            ("rx", "delimiter: 00"),
             ("tx", "kind: ACK "),
             ("tx", "state: "),
             ("tx", "free: "),
             ("tx", "ticks done: "),
-            ("tx", ", holds"),
+            ("tx", ", valid"),
         ];
         for (lane, wanted) in wanted {
             let found = texts(lane, "fields");
