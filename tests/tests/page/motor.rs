@@ -94,8 +94,10 @@ fn a_motor_of_the_list_drives_an_experiment_that_had_none_and_undo_takes_it_away
         page.click("#motor-choice > summary").await?;
         page.choose("#motor-choice [aria-label='Motor']", "17hs4401").await?;
         page.choose("#motor-choice [aria-label='Driver']", "a4988").await?;
-        page.until("document.querySelector('#motor-choice .note').textContent.includes('typical only')")
-            .await?;
+        page.until(
+            "document.querySelector('#motor-choice .note').textContent.includes('typical values only')",
+        )
+        .await?;
         page.click("#motor-choice button").await?;
         let field =
             "document.querySelector(`[data-path='source.motion.axes[0].motor.resistance_ohm']`)?.value";

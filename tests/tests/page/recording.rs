@@ -368,7 +368,7 @@ fn what_a_file_does_not_tell_is_asked_and_what_is_wrong_with_it_is_said() -> Res
         let samples: String = (0..400).map(|at| format!("{},1\n", u8::from(at % 20 < 2))).collect();
         let samples = format!("STEP,DIR\n{samples}");
         choose_file(&page, "samples.csv", &samples).await?;
-        says(&page, "give the sample rate").await?;
+        says(&page, "has no sample rate").await?;
         ensure!(!page.eval::<bool>(READY).await?, "there is nothing to show yet");
         page.until("document.activeElement.id === 'recording-sample-rate'").await?;
         type_into(&page, "Sample rate", "1000000").await?;
@@ -381,7 +381,7 @@ fn what_a_file_does_not_tell_is_asked_and_what_is_wrong_with_it_is_said() -> Res
 
         // Channels whose names say nothing, and that do nothing.
         choose_file(&page, "quiet.csv", "Time [s],D0,D1\n0.0,0,0\n").await?;
-        says(&page, "Choose which channel is STEP, DIR, RX or TX").await?;
+        says(&page, "channel has a known signal").await?;
         let shown =
             "[...document.querySelectorAll('.channels tbody tr')].map((row) => row.cells[0].textContent)";
         assert_eq!(page.eval::<Vec<String>>(shown).await?, ["D0", "D1"]);

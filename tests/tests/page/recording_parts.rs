@@ -138,7 +138,7 @@ fn all_of_a_recording_is_asked_for_once_for_each_width_and_what_fails_is_said_in
         // Of samples the rate says how long they are, whatever the clock.
         let samples: String = (0..400).map(|at| format!("{}\n", u8::from(at % 20 < 2))).collect();
         choose_file(&page, "samples.csv", &format!("STEP\n{samples}")).await?;
-        says(&page, "give the sample rate").await?;
+        says(&page, "has no sample rate").await?;
         type_into(&page, "Clock", "1000000").await?;
         for (rate, end) in [("1000", "399 ms"), ("2000", "199.5 ms")] {
             type_into(&page, "Sample rate", rate).await?;
