@@ -44,7 +44,10 @@ fn mapped(map: &str) -> OpenOptions {
 }
 
 const CASES: &[Case] = &[
-    Case::new("dsview.csv", &["Channel 0: 25 steps, 20 right and 5 left, from 1 ms to 31 ms", "1000 steps/s"]),
+    Case::new(
+        "dsview.csv",
+        &["Channel 0: 25 steps, 20 right and 5 left, from 1 ms to 31 ms", "1000 steps/s"],
+    ),
     Case::new(
         "two-motors-one-dir.vcd",
         &["Channel 0: 50 steps, 25 right and 25 left", "Channel 1: 50 steps, 25 right and 25 left"],
