@@ -381,7 +381,7 @@ fn what_a_file_does_not_tell_is_asked_and_what_is_wrong_with_it_is_said() -> Res
 
         // Channels whose names say nothing, and that do nothing.
         choose_file(&page, "quiet.csv", "Time [s],D0,D1\n0.0,0,0\n").await?;
-        says(&page, "channel has a known signal").await?;
+        says(&page, "Choose which channel is STEP, DIR, RX or TX").await?;
         let shown =
             "[...document.querySelectorAll('.channels tbody tr')].map((row) => row.cells[0].textContent)";
         assert_eq!(page.eval::<Vec<String>>(shown).await?, ["D0", "D1"]);
