@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { plain } from "../../web/state/number.js";
 import { parseNumber, parseQuantity } from "../../web/state/parse_number.js";
 
 const SPEED = { steps_s: "steps/s", mm_s: "mm/s", deg_s: "°/s", rpm: "rpm" };
@@ -107,4 +108,14 @@ test("a typed unit is selected", () => {
     parseQuantity("3 kg", DISTANCE, "mm").message,
     /^“kg” is not a unit of this field; use steps, mm or °\.$/,
   );
+});
+
+test("large numbers have groups of three digits, up to 1e12", () => {
+  const rows = [
+    [999_999_999, "999\u202f999\u202f999 steps"],
+    [23_394_567_890, "23\u202f395\u202f000\u202f000 steps"],
+    [-1e9, "−1\u202f000\u202f000\u202f000 steps"],
+    [1.5e12, "1.5e12 steps"],
+  ];
+  for (const [value, text] of rows) assert.equal(plain(value, "steps"), text);
 });

@@ -28,7 +28,8 @@ export function si(value, unit, digits = 4) {
 export function plain(value, unit) {
   if (!Number.isFinite(value)) return "–";
   const magnitude = Math.abs(value);
-  if (magnitude >= 1e9 || (magnitude > 0 && magnitude < 0.01)) return `${short(value)} ${unit}`;
+  if (magnitude >= 1e9 && magnitude < 1e12) return `${group(short(value))} ${unit}`;
+  if (magnitude >= 1e12 || (magnitude > 0 && magnitude < 0.01)) return `${short(value)} ${unit}`;
   const [whole, part] = trim(value.toFixed(magnitude >= 1000 ? 0 : magnitude >= 10 ? 1 : 3)).split(".");
   return `${group(whole)}${part ? `.${part}` : ""} ${unit}`;
 }

@@ -1,6 +1,6 @@
 /** The front panel: display, LED, buttons, keys, emergency stop, power and switches. */
 import { element, fill, setText } from "../../dom.js";
-import { advice, inputLabel, lcd, led, SWITCHES, sentence } from "./names.js";
+import { advice, inputLabel, lcd, led, SWITCHES, sentence, shortInputLabel } from "./names.js";
 import { driven } from "./script.js";
 
 /** @typedef {import("./names.js").Word} Word */
@@ -86,8 +86,14 @@ export function createFront(root, inputs) {
   const switches = SWITCHES.map((input) => {
     const made = element(
       "button",
-      { type: "button", class: "switch", "data-input": input, "aria-pressed": "false" },
-      inputLabel(input),
+      {
+        type: "button",
+        class: "switch",
+        "data-input": input,
+        "aria-label": inputLabel(input),
+        "aria-pressed": "false",
+      },
+      shortInputLabel(input),
     );
     made.addEventListener("click", () => inputs.set(input, made.getAttribute("aria-pressed") === "true" ? 0 : 1));
     return made;
