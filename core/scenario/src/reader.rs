@@ -154,7 +154,10 @@ impl JsonReader {
                 Some((index, target)) if !current.contains(&rename.new) => {
                     self.field(group, &mut given, (rename.old, index), value, *target);
                 }
-                _ => self.unknown(rename.old, group, Some(rename)),
+                _ => {
+                    let detail = format!("duplicate field: {} is its new name; use one of them", rename.new);
+                    self.validator.add(rename.old, Cause::Type { detail });
+                }
             }
         }
         is_map

@@ -217,7 +217,9 @@ mod tests {
                 let both = position.with(&names);
                 let (read, problems) = Scenario::from_json_lenient(&both);
                 assert_eq!(problems.len(), 1, "{both}: {problems:?}");
-                assert!(problems[0].path.ends_with(old), "{both}: {}", problems[0].path);
+                let problem = problems[0].to_string();
+                let expected = format!("{old}: duplicate field: {new} is its new name; use one of them");
+                assert!(problem.ends_with(&expected), "{both}: {problem}");
                 assert_eq!(Scenario::from_json(&position.new_name()), Ok(read), "{both}");
             }
         }
