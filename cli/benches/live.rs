@@ -8,7 +8,7 @@
     not(target_os = "linux"),
     allow(dead_code, unused_imports, reason = "processes are inspected in /proc")
 )]
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing ends the measurement")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a missing program ends the measurement")]
 
 use std::{
     fmt::Write as _,

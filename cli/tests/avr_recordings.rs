@@ -3,7 +3,7 @@
 //!
 //! `cargo xtask test --only avr` installs the tools and runs it. `STEPSCOPE_BLESS=1` writes the recordings; then
 //! measure the numbers in their README again.
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a missing file or program fails the test")]
 
 mod avr;
 

@@ -3,7 +3,7 @@
 //!
 //! `cargo xtask test --only live` installs the tools and runs it.
 #![cfg(unix)]
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a missing file or program fails the test")]
 
 use rustix::process::{Pid, Signal, kill_process};
 use std::{
@@ -103,7 +103,7 @@ fn served(place: &[&str], pace: &str, seed: u64) {
 }
 
 #[test]
-#[ignore = "asks Python and socat: cargo xtask test --only live"]
+#[ignore = "needs Python and socat: cargo xtask test --only live"]
 fn serves_a_pyserial_host_by_pseudo_terminal_and_socket() {
     served(&["--pty"], "1", 1);
     served(&["--tcp", "127.0.0.1:0"], "1", 2);
@@ -112,7 +112,7 @@ fn serves_a_pyserial_host_by_pseudo_terminal_and_socket() {
 }
 
 #[test]
-#[ignore = "asks Python and socat: cargo xtask test --only live"]
+#[ignore = "needs Python and socat: cargo xtask test --only live"]
 fn a_python_device_executes_all_ticks_despite_lost_replies() {
     let scenario = file("motion.json", MOTION);
     for seed in ["1", "2", "3"] {
@@ -137,7 +137,7 @@ fn a_python_device_executes_all_ticks_despite_lost_replies() {
 }
 
 #[test]
-#[ignore = "asks Python and socat: cargo xtask test --only live"]
+#[ignore = "needs Python and socat: cargo xtask test --only live"]
 fn serve_and_send_work_over_ports_of_socat() {
     let scenario = file("socat.json", MOTION);
     let ends = ["a", "b"].map(|end| scenario.with_file_name(format!("judges-socat-{end}")));
@@ -161,7 +161,7 @@ fn serve_and_send_work_over_ports_of_socat() {
 }
 
 #[test]
-#[ignore = "asks Python and socat: cargo xtask test --only live"]
+#[ignore = "needs Python and socat: cargo xtask test --only live"]
 fn a_suspended_host_repeats_frames_and_no_tick_is_wrong() {
     let scenario = file("host-stopped.json", MOTION);
     let server =
@@ -183,7 +183,7 @@ fn a_suspended_host_repeats_frames_and_no_tick_is_wrong() {
 }
 
 #[test]
-#[ignore = "asks Python and socat: cargo xtask test --only live"]
+#[ignore = "needs Python and socat: cargo xtask test --only live"]
 fn the_python_example_of_the_documentation_runs() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/how-to/connect-a-program.md");
     let page = fs::read_to_string(page).expect("the page");

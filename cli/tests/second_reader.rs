@@ -2,7 +2,7 @@
 //! the trace.
 //!
 //! `cargo xtask test --only vcd` installs the tools and runs it.
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a missing file or program fails the test")]
 
 use std::{
     collections::BTreeMap,

@@ -46,7 +46,7 @@ pub(crate) fn counted(port: &impl std::os::fd::AsFd) -> Option<LineErrors> {
     /// `struct serial_icounter_struct` of <linux/serial.h>: twenty `int`s.
     type Counters = [i32; 20];
     const FRAME: usize = 6;
-    #[allow(unsafe_code, reason = "no crate that is used here has this call")]
+    #[allow(unsafe_code, reason = "no dependency offers this call")]
     // SAFETY: TIOCGICOUNT writes a `serial_icounter_struct`, which has the size of `Counters`; every value of its
     // ints is valid.
     let counters = unsafe { ioctl(port, Getter::<TIOCGICOUNT, Counters>::new()) }.ok()?;

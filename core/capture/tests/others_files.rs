@@ -2,7 +2,7 @@
 //! sigrok's, on which PulseView stands.
 //!
 //! `cargo xtask test --only vcd` installs these first, and runs it.
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a missing file or program fails the test")]
 
 mod common;
 

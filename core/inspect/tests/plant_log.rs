@@ -1,5 +1,5 @@
 //! The log of a plant compared with all of its points: minimum and maximum of a window, and values at a cycle.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 
 use stepscope_inspect::plant::log::{CycleWindow, MOTOR, PlantLog, SUPPLY};
 use stepscope_inspect::trace::stored_run::StoredRun;

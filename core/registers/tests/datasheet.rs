@@ -1,6 +1,6 @@
 //! The tables of `datasheet.md` are those of the register table. `STEPSCOPE_BLESS=1 cargo test -p
 //! stepscope-registers` writes them; the text around them is written by hand.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 
 use std::{env, fmt::Write as _, fs, path::Path};
 use stepscope_registers::{

@@ -1,5 +1,5 @@
 //! The study's tab Measures, its figures against the core's, and the sensor beside the spectrum.
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a missing file or program fails the test")]
 
 use anyhow::{Result, ensure};
 use serde_json::json;

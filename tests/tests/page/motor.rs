@@ -1,6 +1,6 @@
 //! The view Motor and the study's tab Motor against what the core finds: verdicts, numbers, rates; and a motor that is
 //! chosen from the list.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 
 use anyhow::{Result, ensure};
 use serde_json::json;

@@ -1,5 +1,5 @@
 //! The view Panel and the form of stand-alone controllers against what the core makes of the same presses.
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 
 use anyhow::{Result, ensure};
 use fantoccini::actions::{InputSource as _, KeyAction, KeyActions};

@@ -1,5 +1,5 @@
 //! The motor of an axis: its fields, the warning beside a move, and the study's tab Torque against the core's numbers.
-#![allow(clippy::expect_used, clippy::panic, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, clippy::panic, reason = "a missing file or program fails the test")]
 
 use anyhow::{Result, ensure};
 use serde_json::{Value, json};

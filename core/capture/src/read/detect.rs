@@ -230,7 +230,7 @@ fn by_rows(lines: &[&[u8]]) -> Option<Detected> {
 }
 
 /// Rows that begin with a rising number: levels, positions or bytes. `Some(None)` if ambiguous.
-#[allow(clippy::option_option, reason = "rows of numbers that may be either are of no other kind")]
+#[allow(clippy::option_option, reason = "ambiguous rows must not be tried as another format")]
 fn by_numbers(lines: &[&[u8]]) -> Option<Option<Detected>> {
     let separator = separator(lines.first()?);
     let rows: Vec<Vec<&[u8]>> = lines.iter().map(|line| fields(line, separator).collect()).collect();

@@ -182,7 +182,7 @@ fn why_it_follows(machine: &Machine, demand: &Demand, found: &MotorResult) -> St
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::expect_used, reason = "what is missing fails the test")]
+    #![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 
     use super::*;
     use stepscope_peripheral::trace::Digest;

@@ -133,7 +133,7 @@ pub fn settling(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::expect_used, reason = "what is missing fails the test")]
+    #![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 
     use super::*;
     use stepscope_sim::{Experiment, plant_run::PlantRun};

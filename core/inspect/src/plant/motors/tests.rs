@@ -1,4 +1,4 @@
-#![allow(clippy::expect_used, reason = "what is missing fails the test")]
+#![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 
 use super::*;
 use crate::plant::outcome::verdict;
