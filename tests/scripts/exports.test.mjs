@@ -18,18 +18,19 @@ const names = (state, span = null) =>
   exportOffers(state, {}, span).flatMap(({ offers }) => offers.map(({ name }) => name));
 
 test("files are named after the experiment", () => {
-  assert.equal(baseName(start), "u-bung-one-turn");
+  assert.equal(baseName(start), "ubung-one-turn");
   assert.equal(baseName({ scenario: { title: "…" } }), "stepscope");
+  assert.equal(baseName({ scenario: { title: `${"a".repeat(39)} b` } }), "a".repeat(39));
 });
 
 test("before a run only the scenario is offered", () => {
   assert.deepEqual(names(start), []);
-  assert.deepEqual(names(update(start, { type: "validated", revision: 0, validation })), ["u-bung-one-turn.json"]);
+  assert.deepEqual(names(update(start, { type: "validated", revision: 0, validation })), ["ubung-one-turn.json"]);
   assert.equal(statusOf(start), "There is no run yet.");
 });
 
 test("a run is offered as signals, tables and a line script", () => {
-  const base = "u-bung-one-turn";
+  const base = "ubung-one-turn";
   const ends = [".vcd", "-edges.csv", ".trace", "-ticks.csv", "-harmonics.csv", ".json", "-line.json"];
   assert.deepEqual(
     names(ran()),
@@ -43,8 +44,8 @@ test("files of a part and of one of several controllers say so in their names", 
   const two = ran({ controllers: [controller, { ...controller, violations: 3 }] });
   const second = update(two, { type: "controller", controller: 1 });
   const found = names(second, { start: 10, end: 20 });
-  assert.ok(found.includes("u-bung-one-turn-controller-2-10-20.vcd"));
-  assert.ok(found.includes("u-bung-one-turn-controller-2-violations.csv"));
+  assert.ok(found.includes("ubung-one-turn-controller-2-10-20.vcd"));
+  assert.ok(found.includes("ubung-one-turn-controller-2-violations.csv"));
   assert.ok(!names(two).some((name) => name.endsWith("-violations.csv")));
 });
 

@@ -17,9 +17,11 @@ export function between({ cursors: { a, b } }) {
 export function baseName({ scenario }) {
   const name = (scenario.title ?? "")
     .normalize("NFKD")
+    .replace(/\p{M}/gu, "")
     .replace(/[^\w]+/g, "-")
-    .replace(/^-+|-+$/g, "")
-    .toLowerCase()
-    .slice(0, 40);
+    .replace(/^-+/, "")
+    .slice(0, 40)
+    .replace(/-+$/, "")
+    .toLowerCase();
   return name || "stepscope";
 }

@@ -14,7 +14,7 @@ const MAX_LINES: usize = 256;
 #[derive(Default)]
 pub(crate) struct Panel {
     incomplete: Vec<u8>,
-    lines: VecDeque<String>,
+    lines: VecDeque<Vec<u8>>,
     /// A `wait` line delays the lines after it until this cycle.
     pub(crate) waits: Option<Instant>,
     /// Reported presses without effect, per controller.
@@ -39,10 +39,9 @@ impl Panel {
 
     /// Also called at the end of input: the last line may have no line feed.
     pub(crate) fn end_line(&mut self) {
-        let bytes = std::mem::take(&mut self.incomplete);
-        let text = String::from_utf8_lossy(&bytes).into_owned();
-        if !text.trim().is_empty() {
-            self.lines.push_back(text);
+        let line = std::mem::take(&mut self.incomplete);
+        if !line.trim_ascii().is_empty() {
+            self.lines.push_back(line);
         }
     }
 
@@ -55,16 +54,10 @@ impl Panel {
             self.waits = None;
         }
         while self.waits.is_none() {
-            let Some(text) = self.lines.pop_front() else { break };
-            if text.len() > MAX_LINE {
-                status.note(&format!(
-                    "a line of more than {MAX_LINE} bytes was ignored; use the lines that `help` lists"
-                ));
-                continue;
-            }
-            match text.parse() {
+            let Some(line) = self.lines.pop_front() else { break };
+            match parse(&line) {
                 Ok(line) => self.apply(line, session, status),
-                Err(why) => status.note(&why.to_string()),
+                Err(why) => status.note(&why),
             }
         }
         self.report_ignored(session, status);
@@ -128,6 +121,15 @@ pub(crate) fn status(machine: &StandAlone) -> String {
     text
 }
 
+fn parse(line: &[u8]) -> Result<Line, String> {
+    if line.len() > MAX_LINE {
+        return Err(format!(
+            "a line of more than {MAX_LINE} bytes was ignored; use the lines that `help` lists"
+        ));
+    }
+    String::from_utf8_lossy(line).parse().map_err(|why| format!("{why}"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,6 +162,12 @@ mod tests {
         let name = |signal: Option<Signal>| signal.map_or("push", Signal::name);
         let inputs = controllers[0].inputs.iter();
         inputs.map(|input| (input.cycle, format!("{} {}", name(input.input), input.level))).collect()
+    }
+
+    #[test]
+    fn measures_a_line_before_invalid_bytes_are_replaced() {
+        let is_too_long = |line: &[u8]| parse(line).is_err_and(|why| why.contains("more than 200 bytes"));
+        assert_eq!([&[0xff; 70][..], &[b'x'; 200], &[b'x'; 201]].map(is_too_long), [false, false, true]);
     }
 
     #[test]

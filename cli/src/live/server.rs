@@ -232,7 +232,7 @@ impl Server {
         self.panel.as_ref().is_none_or(|panel| panel.is_done() && is_last())
     }
 
-    /// The next cycle with bytes to write or a line to execute; no round goes beyond it.
+    /// The next cycle with bytes to write or a line to execute. With `--pace max` no round goes beyond it.
     fn deadline(&self) -> Instant {
         let waits = self.panel.as_ref().and_then(|panel| panel.waits);
         // Waking for every byte would delay the process on a busy system.

@@ -160,6 +160,31 @@ fn a_zip_with_overlapping_files_or_false_sizes_is_refused() {
     let mut more = good;
     more[entries[1] + 24..entries[1] + 28].copy_from_slice(&[0xfe; 4]);
     assert!(refused(&more).is_some_and(|message| message.starts_with("“logic-1-1” cannot be unpacked: ")));
+    // Pieces are numbered from 1 without gaps, or there is one without a number.
+    for (names, message) in [
+        (&["logic-1-2", "logic-1-3"][..], "the session begins with “logic-1-2”, so samples are missing"),
+        (&["logic-1-1", "logic-1-3"], "“logic-1-3” follows “logic-1-1”, so samples are missing"),
+        (&["logic-1", "logic-1-1"], "“logic-1-1” follows “logic-1”, so samples are missing or duplicated"),
+        (
+            &["logic-1-1", "logic-1-1"],
+            "“logic-1-1” follows “logic-1-1”, so samples are missing or duplicated",
+        ),
+        (&["logic-1-18446744073709551615"; 2], "the session begins with “logic-1-18446744073709551615”"),
+    ] {
+        let pieces: Vec<_> = names.iter().map(|&name| (name, vec![0, 1])).collect();
+        let found = refused(&files(&pieces));
+        assert!(found.as_ref().is_some_and(|found| found.starts_with(message)), "{names:?}: {found:?}");
+    }
+    assert_eq!(refused(&files(&[("logic-1", vec![0, 1])])), None);
+    // A description that is too long.
+    let long = writers::zip(
+        &[("metadata".to_string(), vec![b' '; (1 << 20) + 1]), ("logic-1-1".into(), vec![0, 1])],
+        true,
+    );
+    assert_eq!(
+        refused(&long).as_deref(),
+        Some("“metadata” has more than 1048576 bytes; save the session again")
+    );
     // Two descriptions; one in a folder.
     let two = files(&[("metadata", metadata.clone()), ("logic-1-1", vec![0, 1])]);
     assert_eq!(

@@ -111,9 +111,8 @@ pub fn lcd(display: i64, decimals: u8) -> String {
         let (places, scale) = (usize::from(decimals.min(3)), 10_u64.pow(decimals.min(3).into()));
         format!("{sign}{}.{:0places$}", digits / scale, digits % scale)
     };
-    // The decimal point shares a digit's character.
-    let width = 6 + usize::from(decimals > 0 && text.len() > 6);
-    format!("{text:>width$}")
+    // The decimal point shares a digit's character, so the text may be one longer.
+    format!("{text:>6}")
 }
 
 /// Digest of the panels of all controllers: XXH64, seed 0, over four little-endian words per record.

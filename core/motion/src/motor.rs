@@ -1,5 +1,5 @@
-//! The motor of an axis with its supply and load, for torque computations in `inspect` (DESIGN Part B). It does not affect
-//! a run.
+//! The motor of an axis with its supply and load, for torque computations and the simulated plant (DESIGN Part B). It does
+//! not affect the edges of a run without a plant.
 //!
 //! The defaults are the motor of Song, Han and Lu 2021, table 3, without its rated voltage: with a current-regulating
 //! driver the supply decides. The paper gives neither supply nor load, so 24 V, no inertia and no torque are assumed.

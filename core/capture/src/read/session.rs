@@ -114,9 +114,12 @@ fn read_metadata<R: rawzip::ReaderAt>(
 ) -> Result<Metadata, String> {
     let mut text = Vec::new();
     open_file(archive, file)?
-        .take(MAX_METADATA)
+        .take(MAX_METADATA + 1)
         .read_to_end(&mut text)
         .map_err(|error| format!("“metadata” cannot be read: {error}; save the session again"))?;
+    if text.len() as u64 > MAX_METADATA {
+        return Err(format!("“metadata” has more than {MAX_METADATA} bytes; save the session again"));
+    }
     Metadata::parse(&String::from_utf8_lossy(&text))
 }
 
@@ -168,7 +171,7 @@ fn check_ranges(mut ranges: Vec<(u64, u64)>) -> Result<(), String> {
     Ok(())
 }
 
-/// `logic-1-1`, `logic-1-2`, …, or `logic-1` alone.
+/// `logic-1-1`, `logic-1-2`, …, or `logic-1` alone, which is number 0.
 fn ordered_pieces(
     pieces: Vec<(String, PackedFile)>,
     capturefile: &str,
@@ -180,16 +183,24 @@ fn ordered_pieces(
     let numbered = pieces.into_iter().filter_map(|(name, packed)| number(&name).map(|at| (at, name, packed)));
     let mut numbered: Vec<(u64, String, PackedFile)> = numbered.collect();
     numbered.sort_by_key(|(at, ..)| *at);
-    if let Some(pair) =
-        numbered.windows(2).find(|pair| !matches!(pair, [(one, ..), (next, ..)] if one + 1 == *next))
-        && let [(_, one, _), (_, next, _)] = pair
-    {
-        return Err(format!(
-            "“{next}” follows “{one}”, so samples are missing or duplicated; save the session again"
-        ));
+    match numbered.first() {
+        None => return Err(format!("the session has no samples (“{capturefile}-1”); record again")),
+        Some((2.., first, _)) => {
+            return Err(format!(
+                "the session begins with “{first}”, so samples are missing; save the session again"
+            ));
+        }
+        Some(_) => {}
     }
-    if numbered.is_empty() {
-        return Err(format!("the session has no samples (“{capturefile}-1”); record again"));
+    let is_next = |one: u64, next: u64| one > 0 && one.checked_add(1) == Some(next);
+    for pair in numbered.windows(2) {
+        if let [(at, one, _), (next_at, next, _)] = pair
+            && !is_next(*at, *next_at)
+        {
+            return Err(format!(
+                "“{next}” follows “{one}”, so samples are missing or duplicated; save the session again"
+            ));
+        }
     }
     Ok(numbered.into_iter().map(|(_, name, packed)| (name, packed)).collect())
 }

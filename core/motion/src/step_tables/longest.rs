@@ -15,8 +15,8 @@ const MAX_AHEAD: usize = 1 << 20;
 const SAMPLES: usize = 8;
 /// Maximum time of an entry in units, so that all sums of [`feasible_window`] fit in 64 bits.
 const MAX_SPAN: u64 = 1 << 56;
-// Gates extend to twice the span, and the steepest add one unit farther.
-const _: () = assert!(2 * MAX_SPAN + MAX_AHEAD as u64 * MAX_AHEAD as u64 <= feasible_window::MAX_TIME);
+// Gates extend to twice the span, and their differences to four times; the steepest add goes one unit farther.
+const _: () = assert!(4 * MAX_SPAN + 2 * MAX_AHEAD as u64 * MAX_AHEAD as u64 <= feasible_window::MAX_TIME);
 
 /// The times that a step may have, and its due cycle. Times are in units.
 #[derive(Clone, Copy, Debug)]
