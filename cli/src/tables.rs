@@ -340,7 +340,7 @@ fn json_tables(axes: &Axes, arguments: &Arguments) -> Tables {
             "steps": table.map(|table| table.error.steps),
             "largest_error_us": table.map(|table| micros(table.error.max_cycles as f64)),
             "rms_error_us": table.map(|table| micros(table.error.rms())),
-            "turns": table.map(Stored::turns),
+            "turns": table.map(Stored::entries_without_steps),
             "wire_bytes": table.and_then(Stored::wire_bytes),
             "surplus": table.and_then(|table| table.surplus),
             "why_not": why,
@@ -361,7 +361,7 @@ fn print_row(table: &Stored, clock_hz: u32, out: &mut impl Write) -> io::Result<
         table.error.steps,
         micros(table.error.max_cycles as f64),
         micros(table.error.rms()),
-        table.turns(),
+        table.entries_without_steps(),
         shown(table.wire_bytes()),
         shown(table.surplus)
     )

@@ -21,8 +21,7 @@ pub(crate) fn first_from_zero(holds: impl Fn(u64) -> bool) -> u64 {
     first_near(0, MAX_FIRST, holds)
 }
 
-/// The first number of `0..end` for which `holds`, or `end` if there is none. The number of tries is logarithmic in its
-/// distance from `near`.
+/// The first number of `0..end` for which `holds`, or `end`. The number of tries is logarithmic in its distance from `near`.
 pub(crate) fn first_near(near: u64, end: u64, holds: impl Fn(u64) -> bool) -> u64 {
     let near = near.min(end);
     // Invariant: false before `from`, true from `to` on.
@@ -40,8 +39,7 @@ pub(crate) fn first_near(near: u64, end: u64, holds: impl Fn(u64) -> bool) -> u6
     first_in(from, to, holds)
 }
 
-/// The border between `from`, where `holds` is true, and `to`, where it is false and which may be less than `from`. Returns
-/// the closest numbers on both sides. Neither `from` nor `to` is tried.
+/// The closest numbers on both sides of the border between `from`, where `holds`, and `to` (maybe less), where it does not.
 pub fn border(from: f64, to: f64, holds: impl Fn(f64) -> bool) -> (f64, f64) {
     let (mut from, mut to) = (from, to);
     for _ in 0..HALVINGS {

@@ -70,8 +70,7 @@ pub fn round_half_up(x: f64) -> i64 {
     }
 }
 
-/// The square root. IEEE 754 defines every bit, so each target may use its own instruction. That of wasm is ten times as
-/// fast as `libm`.
+/// IEEE 754 defines every bit of a square root, so each target may use its own: that of wasm is ten times as fast as `libm`'s.
 fn square_root(x: f64) -> f64 {
     #[cfg(feature = "std")]
     let root = x.sqrt();

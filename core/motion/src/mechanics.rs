@@ -18,16 +18,12 @@ use crate::timing::{Exact, F106};
 use core::f64::consts::PI;
 use stepscope_peripheral::parameters;
 
-/// What a step of the motor moves, and the units that follow from it.
+/// What a step of the motor moves. All but `Rotary` define millimeters, all but `Direct` degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mechanics {
-    /// A bare shaft: degrees.
     Rotary(Rotary),
-    /// A wheel, pulley or gear: 2*pi*radius mm per turn, and degrees.
     Wheel(Wheel),
-    /// A screw: its lead in mm per turn, and degrees.
     Screw(Screw),
-    /// A given length of one step: mm.
     Direct(Direct),
 }
 
@@ -44,14 +40,14 @@ parameters! { (Clone, Debug, PartialEq)
         pub microsteps: u16 = 16,
     }
 
-    /// A wheel, pulley or gear on the shaft.
+    /// A wheel, pulley or gear on the shaft: 2*pi*radius mm per turn.
     pub struct Wheel {
         pub full_step_deg: f64 = 1.8,
         pub microsteps: u16 = 16,
         pub radius_mm: f64 = 10.0,
     }
 
-    /// A lead screw on the shaft.
+    /// A lead screw on the shaft: its lead in mm per turn.
     pub struct Screw {
         pub full_step_deg: f64 = 1.8,
         pub microsteps: u16 = 16,

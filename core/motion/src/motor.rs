@@ -35,9 +35,9 @@ parameters! { (Clone, Debug, PartialEq)
         pub load_inertia_g_cm2: f64 = 0.0,
         /// Torque that opposes the motion (friction, cutting), seen from the rotor's shaft.
         pub load_torque_mn_m: f64 = 0.0,
-        /// Maximum rate at which the motor is known to work with its load (the paper's f_s); `None` if only the torque
-        /// limits the rate.
+        /// Maximum rate at which the motor is known to work with its load; `None` if only the torque limits the rate.
         pub working_rate_hz: Option<f64> = None,
+        /// Friction of the rotor, only in the plant; torque computations use `load_torque_mn_m` alone.
         pub friction_mn_m: f64 = 5.0,
         /// Breakaway torque; `None` for the friction.
         pub stiction_mn_m: Option<f64> = None,

@@ -20,12 +20,10 @@ use stepscope_peripheral::segment::{FRACTION_BITS, LAST_CYCLE, PulseTimes, Refus
 pub struct Problem<C = Cause> {
     /// Such as `source.motion.axes[0].moves[2].cosine.ramp_s`; empty for the whole scenario.
     pub path: String,
-    /// What is wrong with the value, and how to fix it.
     pub cause: C,
 }
 
 impl<C> Problem<C> {
-    /// A problem of the value at `path`.
     pub fn new(path: impl Into<String>, cause: impl Into<C>) -> Self {
         Self { path: path.into(), cause: cause.into() }
     }
@@ -125,86 +123,38 @@ fn remedy_for(quantity: &str) -> &'static str {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Cause {
+    /// A value of any kind is wrong.
     Value(ValueError),
     /// The unit is not available for this kind of mechanics.
-    NoSuchUnit {
-        given: f64,
-        unit: &'static str,
-        mechanics: &'static str,
-    },
+    NoSuchUnit { given: f64, unit: &'static str, mechanics: &'static str },
     /// Two ramps are longer than the move.
-    RampTooLong {
-        ramp_s: f64,
-        duration_s: f64,
-    },
+    RampTooLong { ramp_s: f64, duration_s: f64 },
     /// The top speed is below the start speed; both in steps/s.
-    TopBelowStart {
-        top: f64,
-        start: f64,
-    },
+    TopBelowStart { top: f64, start: f64 },
     /// The top speed is above the maximum of the table; both in steps/s.
-    TopAboveTable {
-        top: f64,
-        max: f64,
-    },
+    TopAboveTable { top: f64, max: f64 },
     /// The table's timer is slower than the rate in steps/s.
-    TimerTooSlow {
-        rate: f64,
-        timer_hz: u32,
-    },
+    TimerTooSlow { rate: f64, timer_hz: u32 },
     /// A speed that follows from other numbers is too high; both in steps/s.
-    TooFast {
-        rate: f64,
-        max: f64,
-    },
+    TooFast { rate: f64, max: f64 },
     /// Slices are so short that none has a step, even at the top speed of `rate` steps/s.
-    SliceTooShort {
-        rate: f64,
-        slice_s: f64,
-    },
+    SliceTooShort { rate: f64, slice_s: f64 },
     /// Slices cannot contain all steps, even at the maximum rate in steps/s.
-    SlicesTooFew {
-        slices: u64,
-        slice_s: f64,
-        steps: u64,
-        rate: f64,
-    },
-    NoSteps {
-        steps: f64,
-    },
+    SlicesTooFew { slices: u64, slice_s: f64, steps: u64, rate: f64 },
+    /// A distance rounds to 0 steps.
+    NoSteps { steps: f64 },
     /// The time of a point is not later than that of the previous point by at least `min`; all in s.
-    NotRising {
-        given: f64,
-        before: f64,
-        min: f64,
-    },
-    /// Tick `tick` (from 0) needs more steps than its slots allow. `rate` is the required, `limit` the available step
-    /// rate, in steps/s.
-    TooManySteps {
-        tick: u64,
-        steps: u64,
-        slots: u8,
-        rate: f64,
-        limit: f64,
-    },
+    NotRising { given: f64, before: f64, min: f64 },
+    /// Tick `tick` (from 0) needs more steps than its slots allow: `rate` instead of `limit` in steps/s.
+    TooManySteps { tick: u64, steps: u64, slots: u8, rate: f64, limit: f64 },
     /// A segment of steps has a count of 0.
     EmptySegment,
     /// The interval of a segment's step (from 1), in 1/65536 cycle, is out of its range.
-    SegmentInterval {
-        step: u64,
-        interval: i128,
-        pulse: PulseTimes,
-    },
+    SegmentInterval { step: u64, interval: i128, pulse: PulseTimes },
     /// The end of a segment, in 1/65536 cycle, exceeds 64 bits.
-    SegmentEndTooLate {
-        end: i128,
-    },
+    SegmentEndTooLate { end: i128 },
     /// A step (from 1) of a motion follows the previous step, or the start, after too few cycles.
-    StepTooSoon {
-        step: u64,
-        interval: u64,
-        pulse: PulseTimes,
-    },
+    StepTooSoon { step: u64, interval: u64, pulse: PulseTimes },
 }
 
 impl From<ValueError> for Cause {

@@ -9,14 +9,12 @@ type Range<T> = RangeInclusive<T>;
 /// Maximum number of listed problems per scenario.
 pub const MAX_PROBLEMS: usize = 100;
 
-/// Collects problems with the path of the current value. It lists at most [`MAX_PROBLEMS`], and counts all.
-///
-/// A `field` is the name of a field, or several with dots between them; empty for the current value itself.
+/// Collects problems with the path of the current value. It lists at most [`MAX_PROBLEMS`], and counts all. A `field` is the
+/// name of a field, or several with dots between them; empty for the current value itself.
 #[derive(Clone, Debug)]
 pub struct Validator<C = Cause> {
     path: String,
     problems: Vec<Problem<C>>,
-    /// Number of problems, including those not listed.
     count: usize,
 }
 
@@ -73,7 +71,6 @@ impl<C> Validator<C> {
         result
     }
 
-    /// Path of the current value.
     pub fn path(&self) -> &str {
         &self.path
     }

@@ -5,8 +5,6 @@
 //! rate[top] = round_half_up(v1)                     top = first k with v0^2 + 2*a*k >= v1^2
 //! reload[k] = floor(timer_hz/rate[k])
 //! ```
-//!
-//! As in the paper, the first row that reaches the top speed has the top speed itself and is the last.
 
 use crate::{curves::climb::Climb, timing::Exact};
 
@@ -32,7 +30,6 @@ impl AccelerationTable {
         Self { top: climb.steps_to(top), climb, top_rate: top.rounded().unsigned_abs(), timer_hz }
     }
 
-    /// Clock of the timer that counts the reloads.
     pub fn timer_hz(&self) -> u32 {
         self.timer_hz
     }

@@ -30,7 +30,6 @@ pub struct Breakpoints {
 }
 
 impl Breakpoints {
-    /// The breakpoints of a plan.
     pub fn of(plan: &AxisPlan) -> Self {
         let moves = plan.moves().iter().map(|planned| {
             let period_s = planned.profile.repeats().map(|(period_s, _)| period_s);

@@ -40,8 +40,7 @@ impl Cosine {
         self.top_speed
     }
 
-    /// The longest ramp in s with a top speed of at most `speed` steps/s, T - n/speed; a move can use up to T/2 of it.
-    /// `None` if the move is too fast even without ramps.
+    /// The longest ramp in s with a top speed of at most `speed` steps/s ([`longest_ramp_s`]).
     pub fn longest_ramp_s(&self, speed: f64) -> Option<f64> {
         longest_ramp_s(self.halves.steps.unsigned_abs(), self.halves.duration_s, speed, 0.5)
     }

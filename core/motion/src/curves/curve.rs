@@ -3,12 +3,9 @@
 use crate::{bisection::border, format::grouped};
 use alloc::{format, string::String, vec::Vec};
 
-/// The curve of one move: position, speed and acceleration over time since the move's start.
-///
-/// Times are in s, positions in steps from the start of the move, left negative. Before the start the position is 0,
-/// after the end [`Curve::steps`].
+/// The curve of one move. Times are in s from its start, positions in steps, left negative: 0 before the start, after the
+/// end [`Curve::steps`].
 pub trait Curve {
-    /// Duration of the move in s.
     fn duration_s(&self) -> f64;
 
     /// Position at the end, in whole steps.
@@ -34,10 +31,8 @@ pub trait Curve {
         Vec::new()
     }
 
-    /// Time in s at which a curve without reversals is at `position`, in steps without sign, between start and end. Step k
-    /// is due at k - 1/2.
-    ///
-    /// The default bisects; a formula that can be solved for the time is faster.
+    /// Time in s at which a curve without reversals is at `position`, in steps without sign, between start and end. The
+    /// default bisects; a formula that can be solved for the time is faster.
     fn time_s(&self, position: f64) -> f64 {
         border(0.0, self.duration_s(), |t| libm::fabs(self.position(t)) < position).1
     }
@@ -51,7 +46,6 @@ pub trait Curve {
 /// Maximum magnitudes of a move or an axis, in steps and s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peaks {
-    /// Speed in steps/s.
     pub speed: f64,
     /// Without the jumps of the speed.
     pub acceleration: f64,

@@ -32,14 +32,11 @@ const MAX_NEWTON_STEPS: u32 = 12;
 /// Number of intervals of a phase of constant jerk, in which the speed is curved.
 const JERK_PARTS: u32 = 16;
 
-/// Maximum speed, acceleration and jerk of a move in steps and s, each above 0.
+/// Maximum speed in steps/s, acceleration in steps/s^2 and jerk in steps/s^3 of a move, each above 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits<N = f64> {
-    /// In steps/s.
     pub speed: N,
-    /// In steps/s^2.
     pub acceleration: N,
-    /// In steps/s^3.
     pub jerk: N,
 }
 
@@ -157,8 +154,7 @@ impl JerkLimited {
         self.phases.peak_speed
     }
 
-    /// Times of the first four phases in s: jerk, constant acceleration, jerk, plateau. The other three mirror the first
-    /// three.
+    /// Durations in s of jerk, constant acceleration, jerk and plateau; the other three phases mirror the first three.
     pub fn phases_s(&self) -> [f64; 4] {
         let Phases { jerk_s, constant_s, ramp_s, duration_s, .. } = self.phases;
         [jerk_s, constant_s, jerk_s, (duration_s - 2.0 * ramp_s).or_zero()]

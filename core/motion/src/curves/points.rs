@@ -172,7 +172,6 @@ fn due_position(from: i64, to: i64, index: f64) -> f64 {
     from as f64 + if to > from { index + 0.5 } else { -0.5 - index }
 }
 
-/// Position in whole steps at the end of each piece.
 fn end_positions(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
     // Whether the curve goes left after the end of each piece, immediately or after a standstill.
     let mut goes_left = false;

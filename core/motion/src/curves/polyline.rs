@@ -36,13 +36,11 @@ pub fn cosine_at(point: u16) -> f64 {
     if point == QUARTER { 0.0 } else { libm::cos(PI * f64::from(point) / POINTS_PER_PI) }
 }
 
-/// Breakpoints of a quarter, from 0 to [`QUARTER`], for the maximum deviation `d1` in units of the amplitude.
-///
-/// A chord extends to the last point at which its maximum deviation from the cosine, over 101 equidistant points, is at
-/// most `d1`, and at least to the next point. The search begins at the length of the previous chord, which is similar.
+/// Breakpoints of a quarter, from 0 to [`QUARTER`], for the maximum deviation `d1` in units of the amplitude. A chord extends
+/// to the last point at which its deviation is at most `d1`, and at least to the next point.
 pub fn breakpoints(d1: f64) -> Vec<u16> {
     let mut points = Vec::from([0]);
-    // The length of a chord beyond one point.
+    // Length of a chord beyond one point. The search begins at that of the previous chord, which is similar.
     let (mut from, mut extension) = (0, 0);
     while from < QUARTER {
         let next = from + 1;
@@ -66,10 +64,8 @@ pub fn next_deviation(breakpoints: &[u16]) -> Option<f64> {
         .reduce(|min, deviation| if deviation < min { deviation } else { min })
 }
 
-/// Maximum |chord - cosine| between two points of the angle, over 101 equidistant points.
-///
-/// In a quarter the difference has one maximum, where the cosine is parallel to the chord, so only the points next to it
-/// are computed.
+/// Maximum |chord - cosine| between two points of the angle, over 101 equidistant points. It has one maximum, where the
+/// cosine is parallel to the chord, so only the points next to it are computed.
 fn deviation((from, y_from): (u16, f64), to: u16) -> f64 {
     let y_to = cosine_at(to);
     let length = f64::from(to - from);

@@ -23,24 +23,19 @@ use crate::{bisection::Bracket, curves::curve::lesser, square_root};
 /// Maximum steps of Newton's method; seven are enough.
 const MAX_STEPS: u32 = 100;
 
-/// The longest ramp in s with which `steps` in `duration_s` need a top speed of at most `speed` steps/s, for ramps of area
-/// `area` (1/2 for symmetric shapes). A move can use up to half of its duration. `None` if the move is too fast even
-/// without ramps.
-///
-/// The paper has t_s <= t_i - n/f_s; for other areas it is t_s <= (t_i - n/f_s)/(2*(1 - area)).
+/// The longest ramp in s, maybe above half the duration, with which `steps` in `duration_s` need at most `speed` steps/s;
+/// `None` if they need more even without ramps. For an `area` of 1/2 it is the paper's t_i - n/f_s.
 pub fn longest_ramp_s(steps: u64, duration_s: f64, speed: f64, area: f64) -> Option<f64> {
     let ramp_s = (duration_s - steps as f64 / speed) / (2.0 * (1.0 - area));
     (ramp_s >= 0.0).then_some(ramp_s)
 }
 
-/// The shape of a ramp.
+/// The shape of a ramp with its parameters ([`RampShape`](crate::moves::RampShape)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ramp {
     Sigmoid(Sigmoid),
-    /// A cubic Bezier curve with the control values 0, 0, 1, 1 at equidistant times.
     Bezier,
     Straight,
-    /// Steep at first, as a motor's torque falls with its rate.
     Exponential(Exponential),
 }
 
@@ -159,8 +154,7 @@ impl Ramp {
         self.newton(travel, lesser(guess, 1.0))
     }
 
-    /// Finds the x with G(x) = `travel`. G rises and is convex, so Newton's method approaches the root from above. A step
-    /// that leaves the bracket is replaced by a bisection.
+    /// G rises and is convex, so Newton's method approaches the root from above. A step that leaves the bracket is bisected.
     fn newton(&self, travel: f64, guess: f64) -> f64 {
         let (mut bracket, mut x) = (Bracket::new(0.0, 1.0), guess);
         for _ in 0..MAX_STEPS {

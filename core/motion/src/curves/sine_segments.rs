@@ -138,7 +138,6 @@ impl SineSegments {
         self.motion_segments().take(4 * self.segments.len())
     }
 
-    /// Time per point of the angle in s.
     pub fn point_s(&self) -> f64 {
         self.oscillation.period_s / f64::from(POINTS)
     }

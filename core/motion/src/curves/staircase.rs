@@ -81,12 +81,10 @@ impl Staircase {
     }
 
     /// Steps of each ramp, the paper's S.
-    /// Duration of each ramp in s.
     pub fn ramp_steps(&self) -> u64 {
         self.ramp_steps
     }
 
-    /// Duration of each ramp in s.
     pub fn ramp_s(&self) -> f64 {
         self.starts_s.last().copied().unwrap_or(0.0)
     }

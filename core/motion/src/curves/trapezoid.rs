@@ -93,13 +93,11 @@ impl Trapezoid {
         self.half.peak_speed
     }
 
-    /// Duration of each ramp in s.
     pub fn ramp_s(&self) -> f64 {
         self.half.ramp_s
     }
 
     /// Steps of each ramp, not rounded.
-    /// Duration of each ramp in s.
     pub fn ramp_steps(&self) -> f64 {
         self.half.ramp_steps
     }

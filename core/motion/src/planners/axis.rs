@@ -49,7 +49,6 @@ impl AxisPlan {
         &self.moves
     }
 
-    /// Duration of all moves in s.
     pub fn duration_s(&self) -> f64 {
         self.duration_s
     }
@@ -95,8 +94,6 @@ impl AxisPlan {
 
     /// Steps due by `t` s, with the error of an f64; [`Self::due_by`] is exact for a cycle. A table's step that is due exactly
     /// at `t` counts if it goes to the right, and not yet if it goes to the left.
-    ///
-    /// A move starts at a whole step, so only its own part is rounded.
     pub fn steps_due(&self, t: f64) -> i64 {
         // At the end of a move its last step may not be due yet.
         let ended = self.moves.partition_point(|planned| planned.start_s + planned.profile.duration_s() < t);

@@ -69,12 +69,11 @@ impl AxisPlan {
 
 impl DueBy<'_> {
     /// Steps due by `cycle`, which must be at least that of the previous call.
-    ///
-    /// A move starts at a whole step, so only its own part is rounded.
     pub fn steps(&mut self, cycle: u64) -> i64 {
         while let Some(current) = &mut self.current {
             let end = current.end;
             if !end.is_by(cycle) {
+                // A move starts at a whole step, so only its own part is rounded.
                 return current.steps(cycle, self.clock_hz);
             }
             let PlannedMove { profile, start_steps, .. } = current.planned;

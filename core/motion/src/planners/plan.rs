@@ -1,7 +1,5 @@
-//! Plans an axis of a scenario, or reports all its problems.
-//!
-//! A number is checked with the path of its field. What follows from several numbers (a top speed, a table's length) is
-//! checked with the curve.
+//! Plans an axis of a scenario, or reports all its problems. What follows from several numbers (a top speed, a table's
+//! length) is checked with the curve.
 
 mod motor;
 

@@ -1,6 +1,4 @@
-//! The curve of a move of any kind.
-//!
-//! The kinds are listed three times: [`Profile`] declares them, [`Profile::schedule`] matches them, and [`Profile::plan`] plans them.
+//! The curve of a move of any kind. [`Profile`], [`Profile::schedule`] and [`Profile::plan`] list the kinds.
 
 mod constant;
 mod jerk_limited;

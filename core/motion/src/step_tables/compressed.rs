@@ -185,7 +185,7 @@ impl<I: Iterator<Item = ScheduledStep>> Compression<I> {
             work = left;
             let Some(entries) = section.fewest_entries(is_cut, &mut work) else { return Ok((last, None)) };
             let done = self.writer.entries(&entries, steps);
-            last = steps.get(done.wrapping_sub(1)).map_or(last, |(window, _)| window.due);
+            last = steps.get(done.wrapping_sub(1)).map_or(last, |(window, _)| window.due_cycle);
             // Only compressed steps count, because the others are searched again in the next section.
             work += WORK_PER_STEP * done as u64;
             cuts += u64::from(is_cut || done < length) + 2 * u64::from(may_not_need_wait);
@@ -241,7 +241,8 @@ impl<I: Iterator<Item = ScheduledStep>> Windows<I> {
         (self.last_cycle, self.count) = (last_cycle, self.count - steps.len() as u64);
         self.returned.extend(self.next);
         let steps = steps.iter().rev();
-        self.returned.extend(steps.map(|(window, right)| ScheduledStep { cycle: window.due, right: *right }));
+        self.returned
+            .extend(steps.map(|(window, right)| ScheduledStep { cycle: window.due_cycle, right: *right }));
         self.read();
     }
 
@@ -331,7 +332,7 @@ impl Writer {
                 "{} is not in {window:?}",
                 self.time
             );
-            self.error.add((self.time >> self.format.fraction_bits).abs_diff(window.due));
+            self.error.add((self.time >> self.format.fraction_bits).abs_diff(window.due_cycle));
         }
         let shift = self.format.dropped_bits();
         let (interval, add) = (interval << shift, add << shift);

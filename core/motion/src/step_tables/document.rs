@@ -24,10 +24,7 @@ struct Rate {
     duration: f64,
 }
 
-/// The table of the plan, with times in units of `format`.
-///
-/// # Errors
-/// A move without a table, or too many rows.
+/// The table of the plan, with times in units of `format`; an error for a move without a table, or too many rows.
 pub(super) fn document(plan: &AxisPlan, format: EntryFormat, clock_hz: u32) -> Result<SegmentList, Cause> {
     let clock = f64::from(clock_hz);
     let mut table = Table { format, segments: Vec::new() };

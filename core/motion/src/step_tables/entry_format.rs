@@ -16,13 +16,9 @@ use stepscope_peripheral::segment::{FRACTION_BITS, Segment, SegmentList};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EntryFormat {
     pub name: &'static str,
-    /// Bits of the fraction of a cycle in interval and add, at most 16.
     pub(super) fraction_bits: u32,
-    /// Whole bytes, 8 to 64; unsigned.
     interval_bits: u32,
-    /// Whole bytes, 8 to 32; unsigned.
     count_bits: u32,
-    /// Whole bytes, 8 to 64; signed.
     add_bits: u32,
 }
 
@@ -36,7 +32,6 @@ impl EntryFormat {
     /// Whole cycles in 8 bytes, like Klipper's queue_step.
     pub const TICKS: Self =
         Self { name: "ticks", fraction_bits: 0, interval_bits: 32, count_bits: 16, add_bits: 16 };
-    /// All formats.
     pub const ALL: [Self; 3] = [Self::Q16, Self::Q8, Self::TICKS];
 
     /// A custom format. `widths` are the bits of interval, count and add: whole bytes of up to 64, 32 and 64 bits.
@@ -68,7 +63,6 @@ impl EntryFormat {
         [self.interval_bits, self.count_bits, self.add_bits]
     }
 
-    /// Bytes per entry.
     pub const fn bytes(self) -> u64 {
         ((self.interval_bits + self.count_bits + self.add_bits) / 8) as u64
     }
@@ -98,10 +92,8 @@ impl EntryFormat {
         FRACTION_BITS - self.fraction_bits
     }
 
-    /// The list's segments as entries of this format.
-    ///
-    /// A segment that is too large for an entry becomes several entries: a wait before a long interval, one entry per step for
-    /// a large add, or parts of a large count.
+    /// The list's segments as entries of this format. A segment that is too large for an entry becomes several entries: a wait
+    /// before a long interval, one entry per step for a large add, or parts of a large count.
     ///
     /// # Errors
     /// A time that is not a multiple of this format's unit.
@@ -120,14 +112,6 @@ impl EntryFormat {
             }
         }
         Ok(packer.entries)
-    }
-
-    /// Number of entries from [`Self::pack`].
-    ///
-    /// # Errors
-    /// As [`Self::pack`].
-    pub fn entries(self, list: &SegmentList) -> Result<u64, Cause> {
-        self.pack(list).map(|entries| entries.len() as u64)
     }
 
     /// Whether the format can represent `add` and all intervals, whatever the count.

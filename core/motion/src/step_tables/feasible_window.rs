@@ -110,10 +110,7 @@ pub(super) enum Goal {
     Roomy,
 }
 
-/// An interval and an add of `adds` (minimum, maximum) that pass all gates, if there are any.
-///
-/// The search begins at `guess` and ends as `goal` requires.
-///
+/// An interval and an add of `adds` (minimum, maximum) that pass all gates, if there are any. The search begins at `guess`.
 /// Every gate's times and add*n*(n-1)/2 for `adds` must be within [`MAX_TIME`].
 pub(super) fn fit(gates: &[Gate], adds: (i64, i64), guess: i64, goal: Goal) -> Option<Fit> {
     let (mut left, mut right) = adds;

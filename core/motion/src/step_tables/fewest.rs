@@ -88,7 +88,7 @@ impl Section {
         windows.extend(given.iter().map(|(window, _)| StepWindow {
             low: time(window.low),
             high: time(window.high),
-            due: time(window.due << format.fraction_bits),
+            due: time(window.due_cycle << format.fraction_bits),
             last_in_direction: 0,
         }));
         let mut last_in_direction = given.len();
@@ -528,7 +528,7 @@ mod tests {
     /// Ten steps every 100 cycles and five every 300 cycles: two entries.
     fn two_rates() -> Vec<(Window, bool)> {
         let times = (1..=10).map(|n| 100 * n).chain((1..=5).map(|n| 1000 + 300 * n));
-        times.map(|due| (Window { due, low: due, high: due }, true)).collect()
+        times.map(|due| (Window { due_cycle: due, low: due, high: due }, true)).collect()
     }
 
     #[test]

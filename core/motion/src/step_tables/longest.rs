@@ -1,9 +1,9 @@
-//! Finds the longest entry from a given time on (DESIGN B8): one parabola through as many windows as possible.
+//! Finds the longest entry from a given time on that ends near the middle of a window, where the next entry begins well
+//! (DESIGN B8): one parabola through as many windows as possible. A unit is 2^-fraction_bits cycle.
 //!
-//! Whether an entry of n steps exists is first tested with some of its steps ([`super::feasible_window`]): seven samples, the
-//! last step, and steps that an earlier entry has missed. If these allow no interval and add, all steps do not either.
-//! Otherwise the entry is replayed through all windows, and the steps that it misses most are added. So a length is refused
-//! only with proof and accepted only after a replay, and few lengths are replayed.
+//! Whether an entry of n steps exists is first tested with gates ([`super::feasible_window`]): seven samples, the last step,
+//! and steps that an earlier entry has missed. If these allow no interval and add, all steps do not either. Otherwise the
+//! entry is replayed through all windows, and the steps that it misses most become gates. So few lengths are replayed.
 
 use crate::problem::Cause;
 use crate::step_tables::entry_format::EntryFormat;
@@ -12,24 +12,25 @@ use alloc::vec::Vec;
 
 /// Maximum number of steps read ahead: 24 bytes each.
 const MAX_AHEAD: usize = 1 << 20;
-const SAMPLES: usize = 8;
+/// The samples are between these parts of an entry.
+const SAMPLE_PARTS: usize = 8;
 /// Maximum time of an entry in units, so that all sums of [`feasible_window`] fit in 64 bits.
 const MAX_SPAN: u64 = 1 << 56;
-// Gates extend to twice the span, and their differences to four times; the steepest add goes one unit farther.
+// The steepest add moves the gate of the last interval by (2*n - 1)*(n - 1)*(span/(n*(n - 1)/2) + 1), less than this sum.
 const _: () = assert!(4 * MAX_SPAN + 2 * MAX_AHEAD as u64 * MAX_AHEAD as u64 <= feasible_window::MAX_TIME);
 
-/// The times that a step may have, and its due cycle. Times are in units.
+/// The times that a step may have, in units, and its due cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
-    pub(super) due: u64,
+    pub(super) due_cycle: u64,
     pub(super) low: u64,
     pub(super) high: u64,
 }
 
 impl Window {
-    pub(super) fn of(due: u64, (earliest, latest): (u64, u64), format: EntryFormat) -> Self {
+    pub(super) fn of(due_cycle: u64, (earliest, latest): (u64, u64), format: EntryFormat) -> Self {
         let [low, last] = [earliest, latest].map(|cycle| cycle << format.fraction_bits);
-        Self { due, low, high: last | ((1 << format.fraction_bits) - 1) }
+        Self { due_cycle, low, high: last | ((1 << format.fraction_bits) - 1) }
     }
 
     /// An entry with only this step, as close to the middle of its window as the minimum interval after `from` allows.
@@ -38,7 +39,7 @@ impl Window {
         let time = middle.max(from + min_interval);
         let interval = time - from;
         let max = format.max_interval();
-        // A time that is too long for an interval begins with a wait.
+        // If the window's end is too far for one interval, a wait comes first. It leaves half an interval.
         let wait = if self.high - from > max { interval.saturating_sub(max / 2) } else { 0 };
         LongestEntry { wait, interval: interval - wait, add: 0, count: 1 }
     }
@@ -67,14 +68,16 @@ pub(super) struct LookAhead {
     from: u64,
 }
 
-/// A search for the longest entry.
+/// Gallops from the guess, then bisects between `sampled` and `refused`; restarts below an entry whose replay fails.
 #[derive(Clone, Copy)]
 struct Search {
     accepted: LongestEntry,
-    /// The longest entry whose samples have passed, and the shortest one that was refused.
+    /// Steps of the longest entry whose samples have passed.
     sampled: usize,
+    /// Steps of the shortest refused entry; above the maximum count before the first refusal.
     refused: usize,
     add: Option<i64>,
+    /// Steps of the next entry to sample.
     next: usize,
 }
 
@@ -180,8 +183,8 @@ impl LookAhead {
         }
     }
 
-    /// Shortens an entry that would end in a single cycle. With integer intervals and no tolerance that is useless, because
-    /// every entry begins in a due cycle.
+    /// Gives up the last eighth of an entry whose last window is a single cycle: the longest entry ends at an edge of the
+    /// cycle, a shorter one closer to the curve. With integer intervals the cycle has only one time.
     fn with_good_end(&self, entry: LongestEntry, max_count: usize) -> LongestEntry {
         let count = entry.count;
         let is_limited = count == max_count || self.ends_with(count) || self.format.fraction_bits == 0;
@@ -229,6 +232,7 @@ impl LookAhead {
     /// Intervals and an add for `n` >= 2 steps that pass the samples and the missed steps.
     fn fit(&mut self, n: usize, add: Option<i64>, goal: Goal) -> Option<Fit> {
         let last = *self.window(n)?;
+        // If the window is before `from`, the difference wraps to a large number.
         let span = last.high.wrapping_sub(self.from);
         if span > MAX_SPAN {
             return None;
@@ -261,15 +265,15 @@ impl LookAhead {
         self.gates.clear();
         let count = n as i64;
         let (min, max) = (self.min_interval as i64, self.format.max_interval().min(MAX_SPAN) as i64);
-        // Twice the interval that the last gate allows at the steepest add: longer ones need no gate.
+        // At the steepest add an interval is at most 2*span/n + n/2; twice as much limits only the sums.
         let max = max.min(4 * (span / count + 1) + 2 * count);
         let max_time = |n: i64| max.saturating_mul(n).min(2 * MAX_SPAN as i64);
-        // The last interval, interval + (n - 1)*add, is the line's value at step 2*n - 1.
+        // (Time of step k)/k = interval + (k - 1)/2*add is a line; at k = 2*n - 1 it is the last interval.
         let end = 2 * count - 1;
         self.gates.push(Gate { n: 1, low: min, high: max_time(1) });
         self.gates.push(Gate { n: end, low: min * end, high: max_time(end) });
-        for part in 1..SAMPLES {
-            let step = n * part / SAMPLES;
+        for part in 1..SAMPLE_PARTS {
+            let step = n * part / SAMPLE_PARTS;
             if step > 0 && step < n {
                 self.add_gate(step);
             }
@@ -282,7 +286,8 @@ impl LookAhead {
         self.add_gate(n);
         let may_end_anywhere = self.ends_with(n) || self.is_tight(n);
         if let Some(gate) = self.gates.last_mut().filter(|_| !may_end_anywhere) {
-            // An eighth of the window, and a cycle, because due cycles are rounded.
+            // The middle eighth; a cycle more, because due cycles are rounded; and at least `count` units, because one unit
+            // of the interval moves the end by as much.
             let width = gate.high - gate.low;
             let narrow = (width / 8 + (1 << self.format.fraction_bits)).max(count).min(width);
             gate.low += (width - narrow) / 2;
@@ -295,7 +300,7 @@ impl LookAhead {
         self.has_last && n == self.left().len()
     }
 
-    /// Whether the window of step `n` is a single cycle. The curve may be anywhere in it, so its middle is not the best end.
+    /// Whether the window of step `n` is a single cycle. The curve may be anywhere in it, so its middle is no better end.
     fn is_tight(&self, n: usize) -> bool {
         self.window(n).is_some_and(|window| window.high - window.low < 1 << self.format.fraction_bits)
     }

@@ -57,10 +57,7 @@ pub fn exact_segments(
     })
 }
 
-/// The exact list of one axis' steps.
-///
-/// # Errors
-/// The first step that is too soon for a pulse, or too late for 48.16 fixed point.
+/// The exact list of one axis' steps; an error for the first one that is too soon or too late.
 pub(super) fn exact(
     steps: impl Iterator<Item = ScheduledStep>,
     pulse: PulseTimes,

@@ -1,10 +1,4 @@
 //! Forms in which a controller can store a motion's step times, and their size (DESIGN B8).
-//!
-//! ```text
-//! exact        every step in its exact cycle, in few entries
-//! document     the table of the motion's paper
-//! compressed   the fewest entries with a given tolerance
-//! ```
 
 use crate::problem::{Cause, ValueError};
 use crate::step_tables::compressed::{Compressed, Tolerance, compressed, compressed_quickly};
@@ -23,7 +17,7 @@ pub const MAX_TABLE_STEPS: u64 = 100_000_000;
 /// Form of stored step times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Every step in its exact cycle.
+    /// Every step in its exact cycle, in few entries.
     Exact,
     /// The table of the motion's paper.
     Document,
@@ -62,7 +56,7 @@ impl Stored {
     }
 
     /// Number of entries without steps: changes of direction and waits, which are no `queue_step` of Klipper.
-    pub fn turns(&self) -> usize {
+    pub fn entries_without_steps(&self) -> usize {
         self.entries.iter().filter(|entry| entry.count == 0).count()
     }
 
@@ -169,7 +163,7 @@ fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
     }
     let quick = compressed_quickly(due(), Tolerance::of(Cycles(0)), format, pulse);
     match quick.map(|quick| quick.list) {
-        Ok(with_fractions) if format.entries(&with_fractions)? < format.entries(&with_integers)? => {
+        Ok(with_fractions) if format.pack(&with_fractions)?.len() < format.pack(&with_integers)?.len() => {
             Ok(with_fractions)
         }
         _ => Ok(with_integers),
@@ -191,12 +185,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn turns_count_entries_without_steps() {
+    fn waits_and_changes_of_direction_are_entries_without_steps() {
         let cycles = [1000, 2000, 3000, 3700, 4400, 5100];
         let steps = cycles.map(|cycle| ScheduledStep { cycle, right: true });
         let pulse = PulseTimes { width: Cycles(30), setup: Cycles(10), hold: Cycles(0) };
         let table = stored_steps(&steps, Form::Exact, EntryFormat::TICKS, pulse).unwrap();
         // The direction to the right, and two intervals.
-        assert_eq!((table.entries.len(), table.turns()), (3, 1));
+        assert_eq!((table.entries.len(), table.entries_without_steps()), (3, 1));
     }
 }

@@ -33,7 +33,6 @@ impl Ticks {
         self.channels
     }
 
-    /// Number of ticks.
     #[allow(clippy::len_without_is_empty, reason = "there is always a tick")]
     pub fn len(&self) -> usize {
         self.bytes.len() / usize::from(self.channels.max(1))
@@ -44,15 +43,13 @@ impl Ticks {
         &self.bytes
     }
 
-    /// The bytes of each tick.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u8]> {
         self.bytes.chunks_exact(usize::from(self.channels.max(1)))
     }
 }
 
-/// Divides the plans, one per channel, into ticks of `tick_cycles` with up to `slots` steps.
-///
-/// The ticks are enough to end every axis, at least one. A byte without steps repeats the previous direction, initially left.
+/// Divides the plans, one per channel, into ticks of `tick_cycles` with up to `slots` steps: enough to end every axis, at
+/// least one. A byte without steps repeats the previous direction, initially left.
 ///
 /// # Errors
 /// Too many plans or ticks; or the first tick of each axis that needs more steps than it has slots.
@@ -130,7 +127,6 @@ impl TickClock {
         Self { tick_cycles: tick_cycles.max(1), clock_hz: clock_hz.max(1) }
     }
 
-    /// Duration of a tick in cycles.
     pub fn tick_cycles(&self) -> u64 {
         self.tick_cycles
     }
