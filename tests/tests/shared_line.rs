@@ -94,7 +94,7 @@ proptest! {
         }
         let mut left: Vec<Left> = experiment.configs().map(|_| Left::default()).collect();
         let run = experiment.run_each(&mut left);
-        let mut reached = run.host().into_iter().flat_map(|host| host.progress());
+        let mut reached = run.host().into_iter().flat_map(|host| host.conversation().progress());
         for (index, left) in left.iter().enumerate() {
             let ordered = experiment.ticks_of(index);
             let executed = executed(left, experiment.configs().nth(index).map_or(1, |c| c.channels().into()));

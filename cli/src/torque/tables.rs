@@ -19,7 +19,7 @@ pub(crate) fn axes(demands: &[AxisDemand]) -> impl Iterator<Item = Value> + '_ {
             "least_margin_at_s": least.map(|least| least.at_s),
             "speed_jump_steps_s": demand.jump,
             "over_working_rate_steps_s": demand.over_working_rate,
-            "shortages": demand.total,
+            "shortages": demand.shortage_count,
             "enough": demand.is_met(),
             "plant": agreement.as_ref().map(|found| &found.plant),
             "models_agree": agreement.as_ref().and_then(|found| found.agrees),

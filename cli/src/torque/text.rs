@@ -98,14 +98,14 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
             "  warning: {given:.0} steps/s are above the working rate of {most:.0} steps/s; allow more time, or use shorter ramps"
         )?;
     }
-    if demand.total == 0 {
+    if demand.shortage_count == 0 {
         return Ok(());
     }
     writeln!(
         out,
         "  warning: too little torque in {} interval{}; allow more time, or use gentler ramps, less load or a higher supply voltage",
-        demand.total,
-        if demand.total == 1 { "" } else { "s" }
+        demand.shortage_count,
+        if demand.shortage_count == 1 { "" } else { "s" }
     )?;
     for found in demand.shortages.iter().take(MAX_SHOWN) {
         let (from, to, short) = (found.from_s, found.to_s, -found.worst.margin_mn_m());
@@ -115,7 +115,7 @@ fn shortages(demand: &Demand, machine: &Machine, out: &mut impl Write) -> io::Re
             _ => writeln!(out)?,
         }
     }
-    match demand.total.saturating_sub(MAX_SHOWN as u64) {
+    match demand.shortage_count.saturating_sub(MAX_SHOWN as u64) {
         0 => Ok(()),
         more => writeln!(out, "    and {more} more"),
     }

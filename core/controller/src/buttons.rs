@@ -166,7 +166,7 @@ impl Controller {
     }
 
     fn next_number(&mut self) {
-        let number = (self.edit.number + 1) % self.parameters.numbers();
+        let number = (self.edit.number + 1) % self.parameters.number_count();
         self.edit = Edit { number, entry: None };
     }
 

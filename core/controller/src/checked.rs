@@ -29,7 +29,6 @@ impl CheckedSetup {
         Setup { clock_hz, channels, pulse, controllers }
     }
 
-    /// Cycles per second.
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
     }

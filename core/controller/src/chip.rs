@@ -83,7 +83,6 @@ impl RawLevels {
         Self(if level { self.0 | bit } else { self.0 & !bit })
     }
 
-    /// The level of `signal`.
     pub const fn level(self, signal: Signal) -> bool {
         self.0 >> signal as u32 & 1 != 0
     }

@@ -54,7 +54,6 @@ pub(crate) struct Edit {
 pub struct Press {
     /// When the debounced press was handled.
     pub cycle: Instant,
-    /// The pressed button or key.
     pub button: Signal,
     /// The state that ignored it.
     pub state: State,

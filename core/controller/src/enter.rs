@@ -5,19 +5,14 @@ use crate::{check, limits, machine::StandAlone, refusal::Refusal, script};
 use core::fmt;
 use stepscope_peripheral::units::Instant;
 
-/// Why an input was not entered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotEntered {
-    /// The controller does not exist.
     NoController,
     /// The cycle has passed or is out of range.
     Past {
-        /// The requested cycle.
         cycle: Instant,
-        /// The first cycle that is allowed.
         earliest: Instant,
     },
-    /// The input is not allowed.
     Refused(Refusal),
 }
 

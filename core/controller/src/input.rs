@@ -15,7 +15,6 @@ use stepscope_peripheral::units::Instant;
 // The order matters: a cycle handles buttons and keys in it (G1.4), and `is_button`, `is_sensor` and `digit` are ranges of it.
 named_enum! { (PartialOrd, Ord, Hash)
     /// An input signal of a controller.
-    #[allow(missing_docs, reason = "keys and free inputs are named by their numbers")]
     pub enum Signal {
         /// The supply; initially 1.
         Power = "power",

@@ -111,7 +111,6 @@ fn newest_bank(memory: &[u8], slots: usize, numbers: usize) -> Option<(usize, u3
     Some((index, seq, words.collect()))
 }
 
-/// The numbers of the newest valid bank.
 pub(crate) fn saved_numbers(memory: &[u8], slots: usize, numbers: usize) -> Option<Vec<i32>> {
     Some(newest_bank(memory, slots, numbers)?.2)
 }

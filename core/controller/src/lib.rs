@@ -28,6 +28,7 @@
 //! assert_eq!(machine.position(0), Some(100));
 //! ```
 #![cfg_attr(not(test), no_std)]
+#![allow(missing_docs, reason = "a name that has its meaning and unit needs no comment")]
 
 extern crate alloc;
 

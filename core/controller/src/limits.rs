@@ -8,15 +8,12 @@
 use core::ops::RangeInclusive;
 use stepscope_peripheral::{config, signal::MAX_CHANNELS};
 
-/// Clock rate.
 pub const CLOCK_HZ: RangeInclusive<i128> = 1..=*config::limits::CLOCK_HZ.end() as i128;
 /// Channels of the bus, and maximum number of controllers.
 pub const CHANNELS: RangeInclusive<i128> = 1..=MAX_CHANNELS as i128;
-/// Width of a STEP pulse.
 pub const PULSE_WIDTH_CYCLES: RangeInclusive<i128> = 1..=1_000_000_000;
 /// Setup and hold time of DIR.
 pub const DIR_CYCLES: RangeInclusive<i128> = 0..=1_000_000_000;
-/// Self-test after each power-up.
 pub const SELF_TEST_CYCLES: RangeInclusive<i128> = 1..=0xffff_ffff;
 /// Debounce time of buttons and sensors.
 pub const DEBOUNCE_CYCLES: RangeInclusive<i128> = 0..=1_000_000_000;
@@ -28,17 +25,15 @@ pub const DECIMALS: RangeInclusive<i128> = 0..=3;
 pub const SPEED_HZ: RangeInclusive<i128> = 10..=10_000_000;
 /// Acceleration of level 1 in Hz/s.
 pub const LEVEL_HZ_S: RangeInclusive<i128> = 1..=1_000_000;
-/// Level of acceleration.
 pub const LEVEL: RangeInclusive<i128> = 1..=5;
 /// Minimum trust for a start.
 pub const TRUST: RangeInclusive<i128> = 0..=2;
 /// Runs of a program, and times of a `repeat`.
 pub const LOOPS: RangeInclusive<i128> = 1..=9999;
-/// Groups of a program.
 pub const GROUPS: RangeInclusive<i128> = 1..=50;
-/// Length of a `move` in display digits.
+/// Length of a `move`, as displayed but without its decimal point.
 pub const LENGTH: RangeInclusive<i128> = 0..=999_999;
-/// Target of a `move_to` in display digits.
+/// Target of a `move_to`, as displayed but without its decimal point.
 pub const TARGET: RangeInclusive<i128> = -999_999..=999_999;
 /// Direction: 1 right, 0 left.
 pub const DIRECTION: RangeInclusive<i128> = 0..=1;
@@ -56,9 +51,7 @@ pub const STEPS: RangeInclusive<i128> = -(1 << 31)..=1 << 31;
 pub const PULL_OFF_STEPS: RangeInclusive<i128> = 0..=1_000_000;
 /// Maximum steps of one leg of homing.
 pub const TRAVEL_STEPS: RangeInclusive<i128> = 1..=1_000_000_000;
-/// Write time of an EEPROM byte.
 pub const BYTE_WRITE_CYCLES: RangeInclusive<i128> = 1..=1_000_000_000;
-/// Hold-up time of the supply.
 pub const HOLD_UP_CYCLES: RangeInclusive<i128> = 0..=1_000_000_000_000;
 /// Records of the journal.
 pub const SLOTS: RangeInclusive<i128> = 2..=200;

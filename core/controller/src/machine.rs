@@ -10,8 +10,6 @@ use alloc::{rc::Rc, vec::Vec};
 use stepscope_peripheral::signal::{Event, Levels, Record, Sink};
 use stepscope_peripheral::units::{Cycles, Instant};
 
-/// The stand-alone controllers of a bus in a run.
-///
 /// [`clock`](Self::clock) runs every cycle; [`run`](Self::run) skips the cycles without events. Both give the same result.
 #[derive(Clone, Debug)]
 pub struct StandAlone {
@@ -187,7 +185,6 @@ impl StandAlone {
     }
 }
 
-/// The raw levels and the number of panel records before a cycle.
 struct Before {
     raw: u32,
     panel_records: usize,

@@ -47,8 +47,8 @@ fn moves(parameters: &Parameters) -> impl Iterator<Item = &Move> {
 }
 
 impl Parameters {
-    /// Number of values that the panel can change: 8, and 5 per `move`.
-    pub fn numbers(&self) -> usize {
+    /// Values that the panel can change: 8, and 5 per `move`.
+    pub fn number_count(&self) -> usize {
         COMMON + PER_MOVE * moves(self).count()
     }
 }
@@ -93,7 +93,7 @@ impl Numbers {
 
     pub(crate) fn in_range(parameters: &Parameters, numbers: Vec<i32>) -> Option<Self> {
         let is_in_range = |(index, &number): (usize, &i32)| range(parameters, index).contains(&number.into());
-        let all = numbers.len() == parameters.numbers() && numbers.iter().enumerate().all(is_in_range);
+        let all = numbers.len() == parameters.number_count() && numbers.iter().enumerate().all(is_in_range);
         all.then_some(Self(numbers))
     }
 
@@ -123,7 +123,7 @@ impl Numbers {
         self.common(Common::PulsesPerUnit).max(1).into()
     }
 
-    /// Display digits per unit of length.
+    /// Displayed lengths are `digits` without a decimal point: 305 is 30.5 at a scale of 10.
     fn scale(&self) -> i64 {
         10_i64.pow(self.common(Common::Decimals).min(3))
     }
@@ -142,13 +142,13 @@ impl Numbers {
         }
     }
 
-    /// Steps of a length in display digits, rounded half up.
+    /// Steps of a displayed length, rounded half up.
     pub(crate) fn steps(&self, digits: i64) -> i128 {
         let scale = i128::from(self.scale());
         (2 * i128::from(digits) * i128::from(self.pulses_per_unit()) + scale).div_euclid(2 * scale)
     }
 
-    /// Display digits of a position in steps, rounded half away from zero.
+    /// The displayed position, rounded half away from zero.
     pub(crate) fn digits(&self, position: i32) -> i64 {
         let position = i64::from(position);
         let pulses = self.pulses_per_unit();
@@ -209,7 +209,7 @@ mod tests {
         let parameters = Parameters { groups, loops: 12, ..Parameters::default() };
         let mut numbers = Numbers::new(&parameters);
         assert_eq!(numbers.all(), [100, 1, 1000, 10, 1000, 3, 12, 3, 1000, 5000, 1, 3, 0, 7, 60, 0, 5, 9]);
-        assert_eq!(parameters.numbers(), 18);
+        assert_eq!(parameters.number_count(), 18);
         let expected = MoveNumbers { length: 7, speed_hz: 60, right: false, level: 5, delay_ms: 9 };
         assert_eq!(numbers.of_move(&parameters, 3), expected);
         // Index, entry, whether the number changes (`None`: out of range).

@@ -25,7 +25,7 @@ pub struct PanelRecord {
     pub word: Word,
     /// In steps.
     pub position: i64,
-    /// The position in display digits; in EDIT the entry or the value of a number.
+    /// The position as displayed, without its decimal point; in EDIT the entry or the value of a number.
     pub display: i64,
 }
 
@@ -37,12 +37,11 @@ pub struct PanelRecord {
 /// | 4..=7 | alarm |
 /// | 8..=9 | trust |
 /// | 12..=15 | outputs |
-/// | 16..=24 | group, in EDIT the number; 0 without program |
+/// | 16..=24 | group, in EDIT the index (from 0) of the edited number; 0 without program |
 /// | 32..=47 | loop; 0 without program |
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Word(pub u64);
 
-/// Signal of the LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Led {
     /// Blinks quickly: an alarm.
@@ -59,12 +58,10 @@ impl Word {
         Self(low | u64::from(outputs & 15) << 12 | (group & 0x1ff) << 16 | (loop_ & 0xffff) << 32)
     }
 
-    /// State of the controller.
     pub fn state(self) -> State {
         State::ALL.get(self.0 as usize & 15).copied().unwrap_or(State::Off)
     }
 
-    /// Reason for [`State::Alarm`].
     pub fn alarm(self) -> Alarm {
         Alarm::ALL.get((self.0 >> 4) as usize & 15).copied().unwrap_or(Alarm::None)
     }
@@ -79,7 +76,7 @@ impl Word {
         (self.0 >> 12) as u8 & 15
     }
 
-    /// Current group from 1, in EDIT the number from 0; 0 without a program.
+    /// Current group from 1, in EDIT the index (from 0) of the edited number; 0 without a program.
     pub const fn group(self) -> u16 {
         (self.0 >> 16) as u16 & 0x1ff
     }
@@ -89,7 +86,6 @@ impl Word {
         (self.0 >> 32) as u16
     }
 
-    /// Signal of the LED.
     pub fn led(self) -> Led {
         match self.state() {
             State::Alarm => Led::Quick,

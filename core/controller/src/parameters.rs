@@ -12,8 +12,6 @@
 //! assert_eq!(refused[0].to_string(), "controller 0: groups[1].home: the controller has no `home`; add one or remove this group");
 //! ```
 
-#![allow(missing_docs, reason = "the names of the other fields have their quantity and unit")]
-
 use crate::input::{Change, Input, Signal};
 use crate::journal;
 use alloc::{vec, vec::Vec};
@@ -89,7 +87,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub controllers: Vec<Parameters> = vec![Parameters::default()],
     }
 
-    /// One controller.
     pub struct Parameters {
         pub self_test_cycles: u32 = 1600,
         /// Debounce time of buttons, keys and the release of the E-stop.
@@ -128,13 +125,11 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub release: Release = Release::AtOnce,
     }
 
-    /// The return to zero.
     pub struct Return {
         pub speed_hz: u32 = 1000,
         pub level: u8 = 3,
     }
 
-    /// Homing.
     pub struct Home {
         /// The home switch or a limit.
         pub switch: Signal = Signal::HomeSwitch,
@@ -173,7 +168,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub hard_max_steps: Option<i64> = None,
     }
 
-    /// The EEPROM.
     pub struct Memory {
         pub policy: Policy = Policy::PowerLoss,
         pub byte_write_cycles: u32 = 136_000,
@@ -184,7 +178,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub initial: Initial = Initial::Factory,
     }
 
-    /// A `move`.
     pub struct Move {
         pub length: u32 = 1000,
         /// 1 right, 0 left.
@@ -204,9 +197,8 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub level: bool = true,
     }
 
-    /// A `move_to`.
     pub struct MoveTo {
-        /// Target in display digits.
+        /// Target as displayed, without its decimal point.
         pub length: i32 = 0,
         pub speed_hz: u32 = 5000,
         pub level: u8 = 3,
@@ -224,7 +216,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub delay_ms: u32 = 0,
     }
 
-    /// A `wait`.
     pub struct Wait {
         /// `in_0` to `in_3` or a switch.
         pub input: Signal = Signal::In0,
@@ -235,14 +226,12 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub then: Option<u32> = None,
     }
 
-    /// A `set`.
     pub struct Set {
         /// 0 to 3.
         pub output: u8 = 0,
         pub level: bool = true,
     }
 
-    /// A `repeat`.
     pub struct Repeat {
         /// Number (from 1) of an earlier group.
         pub first: u32 = 1,
@@ -250,7 +239,6 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub times: u32 = 2,
     }
 
-    /// A `jump`.
     pub struct Jump {
         /// Number (from 1) of the next group.
         pub to: u32 = 1,
@@ -279,6 +267,6 @@ impl Parameters {
 
     /// Size of the EEPROM in bytes: the journal and two banks of numbers.
     pub fn memory_len(&self) -> usize {
-        journal::memory_len(self.memory.slots as usize, self.numbers())
+        journal::memory_len(self.memory.slots as usize, self.number_count())
     }
 }

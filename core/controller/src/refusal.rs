@@ -7,7 +7,6 @@ use stepscope_peripheral::units::{Cycles, Instant};
 
 /// Why a value is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum Refusal {
     /// A number or a count is out of its range.
     Range {
@@ -85,7 +84,6 @@ pub struct Refused {
     /// The field as in a scenario: within the controller, such as `groups[2].repeat.first`, or `clock_hz` or
     /// `bus.channels`.
     pub path: String,
-    /// What is wrong.
     pub refusal: Refusal,
 }
 
@@ -164,7 +162,6 @@ impl core::error::Error for Refused {}
 
 /// Why a valid value may be unintended.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum Warning {
     /// With `power_loss` a cut can leave the position unknown.
     ShortHoldUp { given: u64, needed: u64 },
@@ -179,11 +176,9 @@ pub enum Warning {
 /// A warning and its field.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warned {
-    /// Index of the controller.
     pub controller: usize,
     /// The field within the controller, as in a scenario.
     pub path: String,
-    /// What may be unintended.
     pub warning: Warning,
 }
 

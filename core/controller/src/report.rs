@@ -8,7 +8,6 @@ use stepscope_peripheral::{signal::MAX_CHANNELS, units::Instant};
 
 /// Queries about a controller that does not exist return `None` or an empty list.
 impl StandAlone {
-    /// The validated parameters.
     pub const fn checked(&self) -> &CheckedSetup {
         &self.checked
     }
@@ -23,7 +22,6 @@ impl StandAlone {
         positions
     }
 
-    /// Number of controllers.
     pub const fn controllers(&self) -> usize {
         self.controllers.len()
     }
@@ -48,12 +46,10 @@ impl StandAlone {
         self.controllers.iter().any(crate::controller::Controller::jogs_without_end)
     }
 
-    /// The current state.
     pub fn state(&self, i: usize) -> Option<State> {
         Some(self.controllers.get(i)?.state)
     }
 
-    /// Reason for [`State::Alarm`].
     pub fn alarm(&self, i: usize) -> Option<Alarm> {
         Some(self.controllers.get(i)?.alarm)
     }
@@ -130,7 +126,6 @@ impl StandAlone {
         Some(controller.axis.position_error(controller.position))
     }
 
-    /// Presses that had no effect.
     pub fn ignored(&self, i: usize) -> &[Press] {
         self.controllers.get(i).map_or(&[], |controller| &controller.ignored)
     }
@@ -141,7 +136,6 @@ impl StandAlone {
         self.controllers.get(i).map_or(&[], |controller| &controller.panel)
     }
 
-    /// Removes and returns the panel records.
     pub fn take_panel(&mut self, i: usize) -> Vec<PanelRecord> {
         self.controllers
             .get_mut(i)

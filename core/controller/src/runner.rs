@@ -207,7 +207,6 @@ impl Runner {
         decimals.and_then(|&decimals| u8::try_from(decimals).ok()).unwrap_or(0)
     }
 
-    /// The machine, for queries.
     pub const fn machine(&self) -> &StandAlone {
         &self.machine
     }

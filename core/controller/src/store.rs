@@ -45,7 +45,7 @@ impl Controller {
         self.is_memory_invalid = stored.is_none();
         (self.position, self.trust) = stored.unwrap_or((0, trust::LOST));
         self.axis.set_initial_zero(self.position);
-        let saved = journal::saved_numbers(self.eeprom.bytes(), self.slots(), self.parameters.numbers());
+        let saved = journal::saved_numbers(self.eeprom.bytes(), self.slots(), self.parameters.number_count());
         self.numbers = saved
             .and_then(|numbers| Numbers::in_range(&self.parameters, numbers))
             .unwrap_or_else(|| Numbers::new(&self.parameters));

@@ -19,7 +19,6 @@ use stepscope_peripheral::config::Config;
 use stepscope_scenario::{Problem, Scenario};
 use stepscope_sim::{BUDGET_MOTOR_GRID_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};
 
-/// The result of validating a scenario.
 #[derive(Clone, Debug, Serialize)]
 pub struct Validation {
     pub problems: Vec<ProblemText>,
@@ -29,7 +28,6 @@ pub struct Validation {
     pub cost: Option<RunCost>,
 }
 
-/// A problem as text.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProblemText {
     pub path: String,
@@ -47,7 +45,6 @@ pub struct Derived {
     pub controllers: Vec<DerivedController>,
 }
 
-/// Numbers of one controller.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedController {
     pub tick_s: f64,
@@ -56,7 +53,6 @@ pub struct DerivedController {
     pub axes: Vec<DerivedAxis>,
 }
 
-/// Numbers of one axis.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedAxis {
     /// From the first to the last position.
@@ -69,7 +65,6 @@ pub struct DerivedAxis {
     pub moves: Vec<DerivedMove>,
 }
 
-/// Numbers of one move.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedMove {
     pub start_s: f64,
@@ -80,7 +75,6 @@ pub struct DerivedMove {
     pub warning: String,
 }
 
-/// The cost of a run, and whether it requires a confirmation.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunCost {
     pub edges: u64,
@@ -91,7 +85,6 @@ pub struct RunCost {
 }
 
 impl Validation {
-    /// Validates a scenario.
     pub fn of(validated: &ValidatedScenario) -> Self {
         let text = |Problem { path, cause, .. }: &Problem| ProblemText {
             path: path.clone(),
@@ -119,7 +112,6 @@ fn warnings(experiment: &Experiment) -> Vec<ProblemText> {
 }
 
 impl RunCost {
-    /// The cost of a run as text.
     pub fn of(cost: Cost) -> Self {
         let message = if cost.motor_grid_steps > BUDGET_MOTOR_GRID_STEPS {
             format!(

@@ -1,5 +1,4 @@
-//! The commands of each controller and how the host sends them (DESIGN A9): ticks from motions or packets, scheduled on a
-//! raw line, or a job per controller on a framed line.
+//! The commands of each controller and how the host sends them (DESIGN A9).
 
 use crate::hosts::framed_host::{FramedHost, Job};
 use crate::line::{bus_load::carries, noise::Noise};
@@ -24,7 +23,6 @@ const EXCHANGE_BITS: u128 = 11 + 10;
 /// Loads are counted in thousandths of a bit time.
 const PART_OF_BIT: u128 = 1000;
 
-/// The configuration, plans and ticks of one controller.
 #[derive(Clone, Debug)]
 pub(super) struct ControllerPlan {
     config: Config,

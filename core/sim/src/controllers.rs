@@ -48,7 +48,6 @@ impl Controllers {
         }
     }
 
-    /// Whether every controller has run to cycle `end`.
     pub(crate) fn all_have_reached(&self, end: Instant) -> bool {
         match &self.generator {
             Generator::Bus => self.bus.has_reached(end),
@@ -68,8 +67,7 @@ impl Controllers {
         }
     }
 
-    /// Runs to cycle `end` or until a sink pauses, with a sink per controller; with [`Instant::NEVER`] until no event
-    /// follows.
+    /// Runs to cycle `end` or until a sink pauses; with [`Instant::NEVER`] until no event follows.
     pub(crate) fn run_to(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         match &mut self.generator {
             Generator::Bus => self.bus.run(end, sinks),

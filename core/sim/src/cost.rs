@@ -26,11 +26,8 @@ const FRAME_OVERHEAD: u64 = 13;
 /// Maximum cost of a run; an estimate if the host waits for replies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cost {
-    /// Trace records of all controllers.
     pub records: u64,
-    /// Sends of the host.
     pub sends: u64,
-    /// Bytes of the host.
     pub bytes: u64,
     /// Cycle after which no event follows, or the given end.
     pub end_cycle: u64,

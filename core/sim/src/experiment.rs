@@ -146,7 +146,6 @@ impl Experiment {
         self.first().config()
     }
 
-    /// The configurations in the order of the scenario.
     pub fn configs(&self) -> impl ExactSizeIterator<Item = &Config> {
         self.controllers.iter().map(ControllerPlan::config)
     }
@@ -173,12 +172,12 @@ impl Experiment {
 
     /// The host's progress with controller `index`; `None` without ticks or if the host does not wait for replies.
     pub fn host_progress(&self, run: &Run, index: usize) -> Option<Progress> {
-        run.host()?.progress().nth(self.job_index(index)?)
+        run.host()?.conversation().progress().nth(self.job_index(index)?)
     }
 
     /// Ticks acknowledged by controller `index`; `None` as [`Self::host_progress`].
     pub fn host_acknowledged(&self, run: &Run, index: usize) -> Option<u32> {
-        run.host()?.acknowledged().nth(self.job_index(index)?)
+        run.host()?.conversation().acknowledged().nth(self.job_index(index)?)
     }
 
     /// The host's conversation for a real line from cycle `start` on, with an opening tick; `None` if the host does not

@@ -16,6 +16,7 @@
 //! println!("{:016x}", digest.value()); // digest of all edges, the same on every target
 //! ```
 #![cfg_attr(not(test), no_std)]
+#![allow(missing_docs, reason = "a name that has its meaning and unit needs no comment")]
 
 extern crate alloc;
 

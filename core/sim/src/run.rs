@@ -37,7 +37,6 @@ impl Run {
         self.controllers.bus.first()
     }
 
-    /// All controllers in the order of the scenario.
     pub fn devices(&self) -> impl Iterator<Item = &Device> {
         self.controllers.bus.devices()
     }
@@ -87,7 +86,6 @@ impl Run {
         self.device().ticks_done()
     }
 
-    /// Cycles that have been run.
     pub fn cycles(&self) -> Cycles {
         if let Some(ended) = self.plants.as_ref().and_then(|plants| plants.ended) {
             return Cycles(ended.0);
@@ -95,7 +93,6 @@ impl Run {
         Cycles(self.controllers.furthest_cycle().0)
     }
 
-    /// Whether the run has ended.
     pub fn is_done(&self) -> bool {
         if let Some(plants) = &self.plants {
             return plants.ended.is_some();
@@ -164,7 +161,6 @@ impl Run {
         self.plants.as_ref()?.plants.get(controller)
     }
 
-    /// The plant of a controller.
     pub fn plant(&self, controller: usize) -> Option<&Plant> {
         self.attached(controller).map(|attached| &attached.plant)
     }

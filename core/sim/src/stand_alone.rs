@@ -55,12 +55,9 @@ impl Sink for Counted {
     }
 }
 
-/// All stand-alone controllers of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StandAloneSummary {
-    /// One per controller.
     pub panels: Vec<PanelSummary>,
-    /// Digest of all panel records.
     pub digest: u64,
     /// Why the run ended, if too many groups began.
     pub too_many_groups: Option<TooManyGroups>,
@@ -69,12 +66,9 @@ pub struct StandAloneSummary {
 /// Ignored presses listed one by one.
 const MAX_LISTED: usize = 20;
 
-/// One stand-alone controller at the end of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PanelSummary {
-    /// Its state.
     pub state: State,
-    /// Reason for the state ALARM.
     pub alarm: Alarm,
     /// Trust: 0 LOST, 1 HELD, 2 SURE.
     pub trust: u8,
@@ -82,7 +76,6 @@ pub struct PanelSummary {
     pub position: i32,
     /// Distance of the axis from that position, in steps.
     pub axis_error: i64,
-    /// Panel records.
     pub records: usize,
     /// Writes of the most worn cell of its memory.
     pub most_writes: u32,

@@ -26,7 +26,6 @@ use stepscope_peripheral::{protocol::Status, trace::Digest, units::Cycles};
 
 /// A run so far.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the names are those of the text")]
 pub struct Summary {
     /// Whether the line uses the framed protocol.
     pub framed: bool,
@@ -41,9 +40,7 @@ pub struct Summary {
     pub stand_alone: Option<crate::StandAloneSummary>,
 }
 
-/// One controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names are those of the text")]
 pub struct ControllerSummary {
     pub address: Option<u8>,
     pub channels: u8,
@@ -60,7 +57,6 @@ pub struct ControllerSummary {
 
 /// The host's job with one controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names are those of the text")]
 pub struct JobSummary {
     pub ticks: usize,
     pub acknowledged: u32,
@@ -84,7 +80,7 @@ impl Summary {
             cycles: run.cycles(),
             clock_hz: config.clock_hz(),
             line_load: experiment.line_load(),
-            host: run.host().map(|host| host.counts()),
+            host: run.host().map(|host| host.conversation().counts()),
             controllers: controllers.collect(),
             stand_alone: run.stand_alone().map(crate::StandAloneSummary::of),
         }

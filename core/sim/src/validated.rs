@@ -17,13 +17,9 @@ pub struct ValidatedScenario {
 /// An axis with its plan and its bus.
 #[derive(Clone, Copy, Debug)]
 pub struct SelectedAxis<'a> {
-    /// The whole scenario.
     pub scenario: &'a Scenario,
-    /// The bus of the controller that the axis belongs to.
     pub bus: &'a Bus,
-    /// The axis.
     pub axis: &'a Axis,
-    /// Its plan.
     pub plan: &'a AxisPlan,
 }
 
@@ -39,7 +35,6 @@ impl ValidatedScenario {
         Self { scenario: Rc::new(scenario), unreadable: unreadable.into(), result }
     }
 
-    /// The scenario.
     pub const fn scenario(&self) -> &Rc<Scenario> {
         &self.scenario
     }

@@ -53,12 +53,10 @@ impl<'a> Pulses<'a> {
         Self { channel, steps, source: Source::Recorded, clock_hz }
     }
 
-    /// Cycles per s.
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
     }
 
-    /// Cycles per s, as a float.
     pub fn hz(&self) -> f64 {
         f64::from(self.clock_hz)
     }

@@ -79,12 +79,10 @@ impl AnalysisWindow {
         steps.iter().enumerate().map(pulse).filter(is_inside).collect()
     }
 
-    /// Length of the window.
     pub fn length_s(&self) -> f64 {
         self.period_s * f64::from(self.periods)
     }
 
-    /// 1/period.
     pub fn fundamental_hz(&self) -> f64 {
         1.0 / self.period_s
     }

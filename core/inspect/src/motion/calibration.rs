@@ -21,7 +21,6 @@ pub struct Pair {
     pub steps: f64,
 }
 
-/// A straight line through the pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Steps per unit; above 0.
@@ -55,7 +54,6 @@ impl Fit {
     }
 }
 
-/// Both lines through the same pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     pub through_origin: Fit,

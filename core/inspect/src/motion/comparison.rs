@@ -165,7 +165,6 @@ impl Request {
     }
 }
 
-/// A kind of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Candidate {
     Cosine(CosineMethod),
@@ -178,7 +177,6 @@ pub enum Candidate {
 }
 
 impl Candidate {
-    /// Its name in outputs.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Cosine(CosineMethod::Exact) => "Cosine, exact",
@@ -197,7 +195,6 @@ impl Candidate {
     }
 }
 
-/// All kinds of motion to compare.
 pub const CANDIDATES: [Candidate; 12] = [
     Candidate::Cosine(CosineMethod::Exact),
     Candidate::Cosine(CosineMethod::Sliced),
@@ -225,7 +222,6 @@ pub struct Cost {
     pub torque: Option<Torque>,
 }
 
-/// Whether the motor can follow a candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torque {
     /// Whether torque and rate suffice; jumps of speed are not checked.
@@ -233,7 +229,6 @@ pub struct Torque {
     pub min_margin: Option<Moment>,
 }
 
-/// One candidate with its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     pub candidate: Candidate,

@@ -6,7 +6,6 @@
 use crate::motion::actual_motion::Pulses;
 use stepscope_motion::{AxisPlan, Breakpoints};
 
-/// Mean and RMS of one quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
     pub mean: f64,

@@ -51,7 +51,6 @@ impl Window {
         (self.end_s - self.start_s) / self.columns as f64
     }
 
-    /// Time of the middle of a column.
     pub fn center_s(&self, column: usize) -> f64 {
         self.start_s + (column as f64 + 0.5) * self.width_s()
     }
@@ -81,10 +80,8 @@ pub struct Ideal {
     pub acceleration: Band,
 }
 
-/// The ideal motion of an axis that starts at `zero_s`.
-///
-/// Curves are monotonic between breakpoints, so a column's extremes are at its ends and at both sides of the
-/// breakpoints in it.
+/// The ideal motion of an axis that starts at `zero_s`. Curves are monotonic between breakpoints, so a column's
+/// extremes are at its ends and at both sides of its breakpoints.
 pub fn ideal(plan: &AxisPlan, zero_s: f64, window: Window) -> Ideal {
     let n = window.columns;
     let mut bands = Ideal { position: Band::new(n), speed: Band::new(n), acceleration: Band::new(n) };
@@ -207,7 +204,6 @@ pub struct Actual {
     pub speed: Band,
 }
 
-/// The motion of the pulses per column.
 pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
     let mut bands = Actual { position: Band::new(window.columns), speed: Band::new(window.columns) };
     let hz = pulses.hz();

@@ -56,13 +56,10 @@ pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Resul
     Ok(())
 }
 
-/// All measures of one axis of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measures {
     pub length_s: f64,
-    /// Quantization to steps: the ideal curve compared with scheduled steps.
     pub steps: CurveMetrics,
-    /// Quantization to ticks, queue and link: scheduled steps compared with pulses.
     pub ticks: CurveMetrics,
     pub pulses: CurveMetrics,
     /// Scheduled steps compared with ideal times.
@@ -76,7 +73,6 @@ pub struct Measures {
     pub sine: Option<SineMeasures>,
 }
 
-/// Numbers of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Counts {
     pub due: u64,
@@ -98,7 +94,6 @@ pub struct Extremes {
     pub start_stop_steps_s: f64,
 }
 
-/// When a motion ends, in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Duration {
     pub planned_s: f64,

@@ -21,7 +21,6 @@ pub enum Freedom {
     Free,
 }
 
-/// The polyline with minimum distortion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Optimum {
     /// From angle 0 to pi/2, scaled so that free vertices have a first harmonic of 1.
@@ -29,7 +28,7 @@ pub struct Optimum {
     pub distortion: Distortion,
 }
 
-/// Finds the optimum for a number of segments per quarter. `None` unless `segments` is 1 to [`MAX_SEGMENTS`]; harmonics count up to `order`.
+/// `None` unless `segments` (per quarter) is 1 to [`MAX_SEGMENTS`]; harmonics count up to `order`.
 pub fn optimum(segments: usize, freedom: Freedom, order: u16) -> Option<Optimum> {
     if !(1..=MAX_SEGMENTS).contains(&segments) {
         return None;

@@ -152,7 +152,6 @@ pub struct Row {
 }
 
 impl Row {
-    /// The row of one maximum deviation.
     pub fn of(d1: f64, bounds: impl Into<Bounds>) -> Self {
         Measure::new(bounds).row(d1)
     }
@@ -166,12 +165,10 @@ pub struct Measure {
 }
 
 impl Measure {
-    /// Rows with these bounds.
     pub fn new(bounds: impl Into<Bounds>) -> Self {
         Self { bounds: bounds.into(), cosines: cosines() }
     }
 
-    /// The row of one maximum deviation.
     pub fn row(&self, d1: f64) -> Row {
         self.of_points(d1, &breakpoints(d1))
     }
@@ -218,9 +215,8 @@ pub fn swept(from: f64, to: f64, count: u32, index: u32) -> f64 {
     from + (to - from) * (f64::from(index) / f64::from(count.max(2) - 1))
 }
 
-/// Each polyline within a range of d1 once, with its minimum d1.
-///
-/// A polyline changes where the next point of a chord comes within d1, so the steps are found and not sampled.
+/// Each polyline within a range of d1 once, with its minimum d1. A polyline changes where the next point of a
+/// chord comes within d1, so the steps are found and not sampled.
 #[derive(Clone, Debug)]
 pub struct Distinct {
     next: Option<f64>,
@@ -229,7 +225,6 @@ pub struct Distinct {
 }
 
 impl Distinct {
-    /// The polylines for `from..=to`.
     pub fn new(from: f64, to: f64, bounds: impl Into<Bounds>) -> Self {
         Self { next: Some(from), to, measure: Measure::new(bounds) }
     }

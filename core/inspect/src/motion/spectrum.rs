@@ -49,7 +49,6 @@ fn distortion(amplitudes: &[f64]) -> Option<f64> {
     (first > 0.0).then(|| libm::sqrt(square) / first)
 }
 
-/// The harmonics of a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     pub window: AnalysisWindow,

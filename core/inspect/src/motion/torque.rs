@@ -5,7 +5,7 @@
 //! With p = 90/full_step_deg pole pairs, at w rad/s:
 //!
 //! ```text
-//! k = holding torque/(sqrt(2)*rated current)      N*m/A, and V*s/rad: both phases on hold sqrt(2)*k*I
+//! k = holding torque/(sqrt(2)*rated current)      N*m/A, and V*s/rad; both phases energized hold sqrt(2)*k*I
 //! E = k*w,  X = p*w*L                             back-EMF and reactance of a phase, amplitudes
 //! i = (V - E)/(R + j*X),  torque = k*Re(i)        the current, E being real
 //! ```
@@ -69,7 +69,8 @@ pub struct Shortage {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Demand {
     pub shortages: Vec<Shortage>,
-    pub total: u64,
+    /// Also those that are not listed.
+    pub shortage_count: u64,
     /// The moment with the minimum margin; `None` if the plan takes no time.
     pub min_margin: Option<Moment>,
     pub max_rate: f64,
@@ -80,7 +81,6 @@ pub struct Demand {
 }
 
 impl Demand {
-    /// The demand of a plan.
     pub fn of(machine: &Machine, plan: &AxisPlan) -> Self {
         let peaks = plan.peaks();
         let mut found = Shortages::new(peaks.speed, peaks.jump);
@@ -121,7 +121,7 @@ impl Demand {
 
     /// Whether the motor can follow, except for jumps.
     pub fn is_met(&self) -> bool {
-        self.total == 0 && self.over_working_rate.is_none()
+        self.shortage_count == 0 && self.over_working_rate.is_none()
     }
 }
 
@@ -151,7 +151,7 @@ impl Shortages {
         Self { demand: Demand { max_rate, jump, ..Demand::default() }, open: None }
     }
 
-    /// Adds a moment whose interval ends at `to_s`. `border_s` gives the time since the last moment at which the
+    /// Adds a moment whose interval ends at `to_s`. `border_s` returns the time after the previous moment at which the
     /// margin changed its sign.
     fn add(&mut self, moment: Moment, to_s: f64, times: f64, border_s: impl FnOnce() -> f64) {
         let margin = moment.margin_mn_m();
@@ -178,7 +178,7 @@ impl Shortages {
 
     fn close(&mut self) {
         let Some(shortage) = self.open.take() else { return };
-        self.demand.total += 1;
+        self.demand.shortage_count += 1;
         if self.demand.shortages.len() < MAX_SHORTAGES {
             self.demand.shortages.push(shortage);
         }

@@ -17,7 +17,6 @@ use stepscope_peripheral::wire::frame::{
 use stepscope_peripheral::wire::packet::{ALL, ChannelCommand};
 use stepscope_peripheral::{config::Protocol, device::Faults, signal::Positions};
 
-/// A field of a packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     pub name: Cow<'static, str>,
@@ -26,7 +25,6 @@ pub struct Field {
     pub value: String,
 }
 
-/// The CRC of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CrcCheck {
     None,
@@ -41,7 +39,6 @@ pub struct Dissection {
     pub crc: CrcCheck,
 }
 
-/// Dissects the packets of one line.
 #[derive(Clone, Copy)]
 pub struct Dissector<'a> {
     pub protocol: Protocol,

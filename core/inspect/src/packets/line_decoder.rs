@@ -23,7 +23,6 @@ pub struct Span {
     pub sample: Option<u64>,
 }
 
-/// The spans of one line, by kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Spans {
     pub bits: Vec<Span>,
@@ -31,7 +30,6 @@ pub struct Spans {
     pub fields: Vec<Span>,
 }
 
-/// A decoded range of cycles.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Decoded {
     pub rx: Spans,
@@ -40,7 +38,6 @@ pub struct Decoded {
     pub more: bool,
 }
 
-/// Decodes the line of one controller.
 #[derive(Clone, Copy)]
 pub struct LineDecoder<'a> {
     table: PacketTable<'a>,

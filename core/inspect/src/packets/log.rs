@@ -67,7 +67,6 @@ pub struct LoggedPacket {
     latest: Instant,
 }
 
-/// A reply of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordedReply<'a> {
     pub start: Instant,
@@ -85,7 +84,6 @@ pub struct LoggedTick {
     pub row: Option<usize>,
 }
 
-/// The packets of a run.
 #[derive(Clone, Debug, Default)]
 pub struct PacketLog {
     rows: Vec<LoggedPacket>,
@@ -121,7 +119,6 @@ impl PacketLog {
         stop.map_or(tick.start + length, |stop| (tick.start + length).min(*stop))
     }
 
-    /// The bytes of row `index`.
     pub fn bytes(&self, index: usize) -> &[u8] {
         let row = self.rows.get(index);
         row.and_then(|row| self.bytes.get(row.bytes_start..row.bytes_end)).unwrap_or_default()

@@ -26,7 +26,6 @@ use stepscope_peripheral::config::{Config, Protocol};
 use stepscope_peripheral::{units::Instant, wire::BitTimes};
 use stepscope_sim::{Experiment, Run};
 
-/// What a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowKind {
     Packet,
@@ -37,7 +36,6 @@ pub enum RowKind {
 }
 
 impl RowKind {
-    /// Its name in outputs.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Packet => "packet",
@@ -71,7 +69,6 @@ pub struct Row {
     pub tick_end_cycle: Option<u64>,
 }
 
-/// A formatted tick.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TickRow {
     pub start_cycle: u64,
@@ -87,7 +84,6 @@ pub struct Choices {
     pub kinds: Vec<&'static str>,
 }
 
-/// The table of one controller.
 #[derive(Clone, Copy)]
 pub struct PacketTable<'a> {
     experiment: &'a Experiment,
@@ -103,17 +99,14 @@ impl<'a> PacketTable<'a> {
         Self { experiment, run, config, log }
     }
 
-    /// Number of rows.
     pub fn len(&self) -> usize {
         self.log.rows().len()
     }
 
-    /// Whether there is no row.
     pub fn is_empty(&self) -> bool {
         self.log.rows().is_empty()
     }
 
-    /// The bytes of row `index`.
     pub fn bytes(&self, index: usize) -> &'a [u8] {
         self.log.bytes(index)
     }
@@ -123,7 +116,6 @@ impl<'a> PacketTable<'a> {
         TimeScale::of(self.run.cycles(), self.config.clock_hz())
     }
 
-    /// What row `index` is.
     pub fn kind(&self, index: usize) -> Option<RowKind> {
         let row = self.logged(index)?;
         Some(match row.outcome {
@@ -169,7 +161,6 @@ impl<'a> PacketTable<'a> {
         }
     }
 
-    /// Row `index`, formatted.
     pub fn row(&self, index: usize) -> Option<Row> {
         let logged = self.logged(index)?;
         let (mut start, mut gap) = (String::new(), String::new());
@@ -204,13 +195,11 @@ impl<'a> PacketTable<'a> {
         format::write_hex(self.bytes(index), " ", text);
     }
 
-    /// The fields of row `index`.
     pub fn dissect(&self, index: usize) -> Option<Dissection> {
         let outcome = self.logged(index)?.outcome;
         Some(self.dissector(&|address| self.channels(address)).dissect(self.bytes(index), outcome))
     }
 
-    /// The addresses and kinds that occur.
     pub fn choices(&self) -> Choices {
         let (mut addresses, mut kinds) = ([false; 256], Vec::new());
         for index in 0..self.len() {

@@ -22,7 +22,6 @@ const MIN_BINS: u64 = 512;
 const MAX_SNAPSHOTS: usize = 64;
 const POINTS_PER_COLUMN: u64 = 2;
 
-/// The stored values of one plant.
 #[derive(Clone, Debug)]
 pub struct PlantLog {
     step_cycles: u64,
@@ -49,7 +48,6 @@ pub struct CycleWindow {
     pub columns: usize,
 }
 
-/// A curve as minimum and maximum.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Band {
     /// Cycles of points, or of the middles of intervals.
@@ -178,7 +176,6 @@ impl PlantLog {
         bands
     }
 
-    /// All values at a cycle.
     pub fn at(&self, records: &[Record], cycle: u64) -> Vec<f64> {
         let mut values = vec![0.0; self.values()];
         if let Some(plant) = self.replay(records, cycle, cycle, &mut ()) {

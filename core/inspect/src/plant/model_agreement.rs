@@ -71,7 +71,6 @@ impl Observer for FirstSlips {
     }
 }
 
-/// The result of both models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
     pub plant: String,
@@ -102,7 +101,7 @@ pub fn agreement(
         let why = format!("an overload stops the controller at {ms:.2} ms, which the curve does not include");
         return Agreement { plant, agrees: None, why: Some(why) };
     }
-    let (enough, follows) = (demand.total == 0, found.slip_count == 0);
+    let (enough, follows) = (demand.shortage_count == 0, found.slip_count == 0);
     let why = match (enough, follows) {
         (true, true) | (false, false) => None,
         (true, false) => {

@@ -10,7 +10,6 @@ use stepscope_motion::motor::{Decay, Drive, Motor, Regulator};
 use stepscope_motion::moves::Axis;
 use stepscope_scenario::{PlantMotor, Scenario, Source};
 
-/// A motor's data and their source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorSheet {
     pub id: &'static str,
@@ -31,7 +30,6 @@ pub struct MotorSheet {
     pub typical: &'static [&'static str],
 }
 
-/// A driver's data and their source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveSheet {
     pub id: &'static str,
@@ -234,12 +232,10 @@ pub const DRIVES: &[DriveSheet] = &[
     },
 ];
 
-/// The motor with an id.
 pub fn motor(id: &str) -> Option<&'static MotorSheet> {
     MOTORS.iter().find(|sheet| sheet.id == id)
 }
 
-/// The driver with an id.
 pub fn drive(id: &str) -> Option<&'static DriveSheet> {
     DRIVES.iter().find(|sheet| sheet.id == id)
 }

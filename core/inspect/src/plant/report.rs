@@ -7,7 +7,6 @@ use stepscope_plant::measures::{MotorResult, Peak, PlantResult};
 use stepscope_plant::parameters::Setup;
 use stepscope_sim::{Experiment, Run};
 
-/// The report of one controller's plant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlantReport {
     pub plant: PlantSummary,
@@ -16,7 +15,6 @@ pub struct PlantReport {
     pub self_test: Vec<SelfTest>,
 }
 
-/// Supply, sensor and protection.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlantSummary {
     pub controller: usize,
@@ -34,7 +32,6 @@ pub struct PlantSummary {
     pub overload_cycle: Option<u64>,
 }
 
-/// One motor: position, currents and energy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Motor {
     pub channel: usize,
@@ -63,7 +60,6 @@ pub struct Motor {
     pub energy_left_over: Option<String>,
 }
 
-/// One slip of a motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Slip {
     pub channel: usize,

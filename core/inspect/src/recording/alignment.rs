@@ -112,7 +112,6 @@ impl<'a> Alignment<'a> {
         Some(came.saturating_sub(due.saturating_mul(denominator.into())))
     }
 
-    /// The deviation of match `index`.
     pub fn deviation(&self, index: usize) -> Option<Deviation> {
         let Self { recorded, model, .. } = self;
         let (step, recorded_step) = self.matching.pair(index)?;

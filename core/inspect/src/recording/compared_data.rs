@@ -41,7 +41,6 @@ pub struct ExactTimes {
     pub base: Timebase,
 }
 
-/// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -50,7 +49,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// `steps` or `bytes`.
     pub const fn plural(self) -> &'static str {
         match self {
             Self::Steps => "steps",
@@ -58,7 +56,6 @@ impl Kind {
         }
     }
 
-    /// `step` or `byte`.
     pub const fn singular(self) -> &'static str {
         match self {
             Self::Steps => "step",

@@ -7,7 +7,6 @@ use serde::Serialize;
 /// Maximum listed differences.
 pub const MAX_LISTED: usize = 100_000;
 
-/// How steps or bytes differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DifferenceKind {
@@ -36,7 +35,6 @@ pub struct Difference {
     pub recorded_value: Option<u8>,
 }
 
-/// All differences.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Differences {
     pub listed: Vec<Difference>,

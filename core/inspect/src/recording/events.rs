@@ -19,7 +19,6 @@ pub struct Events {
     exact: Option<ExactTimes>,
 }
 
-/// The result of a comparison.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EventComparison {
     pub kind: Kind,
@@ -34,7 +33,6 @@ pub struct EventComparison {
 }
 
 impl EventComparison {
-    /// Whether the recording equals the plan within the tolerance.
     pub const fn is_same(&self) -> bool {
         self.comparison.is_same()
     }
@@ -75,17 +73,14 @@ impl Events {
         }
     }
 
-    /// Time of event `index` in s.
     pub fn at_s(&self, index: usize) -> Option<f64> {
         self.steps.get(index).map(|step| step.cycle as f64 / f64::from(self.clock_hz))
     }
 
-    /// Number of events.
     pub const fn len(&self) -> usize {
         self.steps.len()
     }
 
-    /// Whether there is no event.
     pub const fn is_empty(&self) -> bool {
         self.steps.is_empty()
     }
@@ -108,7 +103,6 @@ impl Events {
         })
     }
 
-    /// The alignment of a comparison with `model`.
     pub fn alignment<'a>(&'a self, model: &'a Self, found: &EventComparison) -> Alignment<'a> {
         let (recorded, model) = (self.side(), model.side());
         Alignment {

@@ -31,7 +31,6 @@ pub struct Part {
     pub to_s: Option<f64>,
 }
 
-/// The part that is loaded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LoadedPart {
     pub from_s: f64,
@@ -41,7 +40,6 @@ pub struct LoadedPart {
     pub of: usize,
 }
 
-/// A capture in cycles, with its report.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadedCapture {
     pub format: String,
@@ -265,7 +263,6 @@ impl LoadedCapture {
         Ok((loaded, map, base))
     }
 
-    /// The steps of a channel.
     pub fn steps_of(&self, channel: u8) -> Vec<Step> {
         match &self.position_steps {
             Some(steps) if channel == 0 => steps.clone(),

@@ -3,7 +3,6 @@
 use crate::motion::curves::{Actual, Band, Window};
 use stepscope_peripheral::trace::Step;
 
-/// Collects the columns of an overview.
 #[derive(Clone, Debug)]
 pub struct Overview {
     window: Window,

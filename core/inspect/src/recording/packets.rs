@@ -14,7 +14,6 @@ use stepscope_peripheral::wire::bit_times::BYTE_BITS;
 use stepscope_peripheral::wire::frame::{DELIMITER, Deframed, Deframer};
 use stepscope_peripheral::{config::Protocol, protocol::FrameOutcome, units::Instant};
 
-/// One packet on a recorded line.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LinePacket {
     pub line: &'static str,
@@ -28,7 +27,6 @@ pub struct LinePacket {
     pub outcome: String,
 }
 
-/// All packets of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packets {
     pub rows: Vec<LinePacket>,

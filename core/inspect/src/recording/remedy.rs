@@ -14,7 +14,6 @@ pub enum Remedy {
     BaudOrFormat,
 }
 
-/// A note on a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     pub text: String,

@@ -12,21 +12,18 @@ use stepscope_capture::uart::{Edge, Estimate, Format, NoRate, estimate};
 use stepscope_peripheral::signal::{Levels, Record};
 use stepscope_peripheral::trace::Step;
 
-/// Figures of each channel, and the contents of the lines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     pub channels: Vec<ChannelReport>,
     pub lines: Vec<LineReport>,
 }
 
-/// The figures of one channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChannelReport {
     pub channel: u8,
     pub figures: StepFigures,
 }
 
-/// A decoded line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LineReport {
     pub name: &'static str,
@@ -44,7 +41,6 @@ pub struct LineReport {
 /// The signals that change in some records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ChangedSignals {
-    /// Number of records.
     pub records: usize,
     /// A bit for each signal that differs from the first record.
     pub changed_mask: u64,
@@ -102,7 +98,6 @@ impl Report {
         }
     }
 
-    /// The report of RX.
     pub fn rx(&self) -> Option<&LineReport> {
         self.lines.iter().find(|line| line.name == line_name(Levels::RX))
     }

@@ -28,7 +28,6 @@ const MARGIN: u64 = 1;
 /// A pulse is at most this fraction (1/2) of the interval, so that DIR can change.
 const MAX_WIDTH_PART: u64 = 2;
 
-/// How to reproduce steps.
 #[derive(Clone, Copy, Debug)]
 pub struct StepRequest {
     pub clock_hz: u32,
@@ -37,7 +36,6 @@ pub struct StepRequest {
     pub within_cycles: u64,
 }
 
-/// A scenario that reproduces a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reproduction {
     pub scenario: Scenario,
@@ -179,7 +177,6 @@ fn pulse_times(records: Option<&[Record]>, all: &[Vec<Step>], clock_hz: u32) -> 
     PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(0) }
 }
 
-/// How to reproduce bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct ByteRequest {
     pub clock_hz: u32,

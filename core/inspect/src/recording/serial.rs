@@ -82,14 +82,12 @@ pub(super) fn looks_like_seven_bit_text(bytes: &[DecodedByte]) -> bool {
         && bytes.iter().filter(is_text).count() * 10 >= bytes.len() * 9
 }
 
-/// A byte with its start bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DecodedByte {
     pub start: Instant,
     pub byte: u8,
 }
 
-/// The bytes of a line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DecodedLine {
     pub bytes: Vec<DecodedByte>,
@@ -206,7 +204,6 @@ fn raw(bytes: &[DecodedByte], bit_cycles: u64) -> Guess {
     Guess::Other
 }
 
-/// `RX` or `TX`.
 pub const fn line_name(mask: u64) -> &'static str {
     if mask == Levels::TX { "TX" } else { "RX" }
 }

@@ -17,7 +17,6 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// No tolerance.
     pub const ZERO: Self = Self { numerator: 0, denominator: 1 };
 
     /// `mantissa / 10^places` us; `None` with more than 13 decimal places.

@@ -56,7 +56,6 @@ impl Difference {
     }
 }
 
-/// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
     pub same: u64,

@@ -6,7 +6,6 @@
 use crate::trace::timing::TimingCheck;
 use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
 
-/// The timing of one driver and its source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheet {
     pub model: DriverModel,
@@ -24,7 +23,6 @@ const fn times(
     TimingRules { step_high_ns, step_low_ns, dir_setup_ns, dir_hold_ns, enable_wake_ns }
 }
 
-/// All drivers of the timing check.
 pub const DRIVERS: [&DataSheet; 6] = [&A4988, &A4979, &DRV8825, &TMC2209, &TMC262, &TB6600_CLASS];
 
 /// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A and t_B 1 us, t_C and t_D 200 ns. No time from
@@ -90,7 +88,6 @@ pub const TB6600_CLASS: DataSheet = DataSheet {
     rules: times([2500, 2500, 5000, 0, 10_000]),
 };
 
-/// The data sheet of a driver.
 pub fn sheet(model: DriverModel) -> &'static DataSheet {
     DRIVERS.into_iter().find(|sheet| sheet.model == model).unwrap_or(&A4988)
 }

@@ -10,7 +10,6 @@ use stepscope_peripheral::{trace::levels_at, units::Instant};
 
 const SIGNALS: u32 = 36;
 
-/// One edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct EdgeRow {
     pub cycle: u64,
@@ -44,7 +43,6 @@ pub struct Signals<'a> {
 }
 
 impl Signals<'_> {
-    /// The level of signal `bit` at a cycle.
     pub fn level(&self, bit: u8, cycle: u64) -> bool {
         levels_at(self.trace, Instant(cycle)).has(1 << bit.min(63))
     }
@@ -55,7 +53,6 @@ impl Signals<'_> {
         found.and_then(|index| self.trace.get(index)).map(|record| record.cycle.0)
     }
 
-    /// The pulse of signal `bit` at a cycle.
     pub fn pulse_at(&self, bit: u8, cycle: u64) -> Pulse {
         let end = self.next(bit, cycle, true, Edge::Any);
         Pulse {

@@ -24,7 +24,6 @@ pub struct Fingerprint {
 }
 
 impl Fingerprint {
-    /// The fingerprint of a complete trace.
     pub fn of(trace: &[Record]) -> Self {
         let mut fingerprinter = Fingerprinter::default();
         for record in trace {
@@ -39,7 +38,6 @@ impl Fingerprint {
     }
 }
 
-/// The smallest power of two s with records/s < 17.
 pub(crate) const fn spacing(records: u64) -> u64 {
     (records / (MAX_CHECKPOINTS as u64 + 1) + 1).next_power_of_two()
 }
@@ -93,7 +91,6 @@ fn high_half(digest: &Digest) -> u32 {
     (digest.value() >> 32) as u32
 }
 
-/// A position in a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
     pub records: u64,
@@ -101,7 +98,6 @@ pub struct Mark {
     pub cycle: Instant,
 }
 
-/// The result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerprintMatch {
     Same(Mark),
@@ -114,7 +110,6 @@ pub enum FingerprintMatch {
     },
 }
 
-/// The trace that ends first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shorter {
     This,
@@ -133,7 +128,6 @@ pub struct FingerprintCheck<'a> {
 }
 
 impl<'a> FingerprintCheck<'a> {
-    /// A check against the fingerprint of another trace.
     pub fn with(other: &'a Fingerprint) -> Self {
         let none = Mark { records: 0, edges: 0, cycle: Instant::RESET };
         Self {

@@ -53,7 +53,6 @@ impl fmt::Display for RunFingerprintError {
 
 impl core::error::Error for RunFingerprintError {}
 
-/// The version of this crate.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 impl RunFingerprint {

@@ -21,7 +21,6 @@ pub const MAX_RECORDS: u64 = 48_000_000;
 /// Records between two calls of [`check_records`].
 pub const RECORDS_PER_CHECK: u64 = 1 << 16;
 
-/// The stored run of one controller.
 #[derive(Clone, Default)]
 pub struct StoredRun {
     pub trace: Vec<Record>,

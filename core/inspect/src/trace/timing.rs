@@ -48,7 +48,6 @@ impl Rule {
     pub const ALL: [Self; 5] =
         [Self::StepHigh, Self::StepLow, Self::DirSetup, Self::DirHold, Self::EnableWake];
 
-    /// Its name in outputs.
     pub const fn name(self) -> &'static str {
         match self {
             Self::StepHigh => "step_high",
@@ -95,7 +94,6 @@ pub struct Shortest {
     pub channel: u8,
 }
 
-/// The result of one rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RuleResult {
     pub rule: Rule,
@@ -108,7 +106,6 @@ pub struct RuleResult {
 }
 
 impl RuleResult {
-    /// Violations of all channels.
     pub fn total(&self) -> u64 {
         self.violations.iter().sum()
     }
@@ -188,7 +185,6 @@ impl TimingCheck {
         &self.results
     }
 
-    /// Violations of all rules.
     pub fn total(&self) -> u64 {
         self.results.iter().map(RuleResult::total).sum()
     }

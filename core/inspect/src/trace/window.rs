@@ -23,7 +23,6 @@ impl<'a> TraceWindow<'a> {
         1 + self.rest.len()
     }
 
-    /// Record `index`.
     pub fn get(&self, index: usize) -> Option<Record> {
         match index.checked_sub(1) {
             None => Some(self.first),
@@ -31,7 +30,6 @@ impl<'a> TraceWindow<'a> {
         }
     }
 
-    /// The records from `index` on.
     pub fn iter_from(&self, index: usize) -> impl Iterator<Item = Record> {
         (index..).map_while(|index| self.get(index))
     }

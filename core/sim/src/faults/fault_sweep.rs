@@ -1,10 +1,6 @@
-//! Runs the same commands under random line faults, one run per seed.
+//! Runs the same commands under random line faults, one run per seed, and tallies the results.
 //!
-//! ```text
-//! seed -> a scenario: the base's commands, drawn noise and receiver rates -> a run -> a tally
-//! ```
-//!
-//! Every run of a seed has the same faults and the same result. The sum of tallies does not depend on the order of seeds.
+//! A seed always has the same faults and the same result; the order of seeds does not change the sum of tallies.
 //!
 //! ```
 //! use stepscope_peripheral::config::Protocol;
@@ -83,7 +79,6 @@ impl FaultSweep {
         }
     }
 
-    /// The scenario of a seed.
     pub fn scenario(&self, seed: u32) -> Scenario {
         // Noise uses the numbers below 2^32 itself.
         let mut random = Random::new(1 << 32 | u64::from(seed));
@@ -118,7 +113,7 @@ impl FaultSweep {
         scenario
     }
 
-    /// Runs a seed's scenario. Errors: a receiver rate with too short bits.
+    /// Errors: a receiver rate with too short bits.
     pub fn run(&self, seed: u32) -> Result<Tally, Vec<Problem>> {
         let scenario = self.scenario(seed);
         let experiment = Experiment::new(&scenario)?;
@@ -167,7 +162,7 @@ fn tally(scenario: &Scenario, experiment: &Experiment, run: &Run, watches: &[Wat
         tally.position_error += align::distance(due, channels, &positions);
     }
     match run.host() {
-        Some(host) => tally.add_host(host.counts()),
+        Some(host) => tally.add_host(host.conversation().counts()),
         None => tally.frames += run.schedule().len() as u64,
     }
     tally.wrong_seeds = u64::from(tally.is_wrong());

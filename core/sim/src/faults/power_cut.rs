@@ -46,7 +46,6 @@ pub enum Outcome {
 
 /// Outcomes of all cuts and controllers.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "one count per outcome")]
 pub struct Tally {
     pub cuts: u64,
     pub known: u64,
@@ -54,9 +53,7 @@ pub struct Tally {
     pub never_known: u64,
     pub old_zero: u64,
     pub wrong: u64,
-    /// The first cut that lost a position.
     pub first_lost: Option<Instant>,
-    /// The first cut that left a wrong position.
     pub first_wrong: Option<Instant>,
 }
 
@@ -112,7 +109,7 @@ impl PowerCuts {
         Self { checked: checked.clone(), cycles, length }
     }
 
-    /// The cycles of the cuts, in rising order.
+    /// In rising order.
     pub fn cycles(&self) -> &[u64] {
         &self.cycles
     }
@@ -122,7 +119,6 @@ impl PowerCuts {
         self.length
     }
 
-    /// The controllers.
     pub const fn checked(&self) -> &CheckedSetup {
         &self.checked
     }
@@ -194,7 +190,6 @@ pub fn tally(checked: &CheckedSetup, cycles: &[u64]) -> Tally {
 /// Byte times until a new zero is saved: the record in progress, its own record, and a margin.
 const OLD_ZERO_BYTES: u64 = 34;
 
-/// A controller's true zero.
 #[derive(Clone, Copy, Debug)]
 struct TrueZero {
     /// The step counter of the bus at position 0.
@@ -305,7 +300,6 @@ const fn is_down(state: Option<State>) -> bool {
     matches!(state, Some(State::Off | State::SelfTest | State::PowerLoss))
 }
 
-/// The cycles in which a byte of memory is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ByteWrite {
     begin: u64,

@@ -75,26 +75,6 @@ impl FramedHost {
         &self.conversation
     }
 
-    /// Progress of each job.
-    pub fn progress(&self) -> impl Iterator<Item = Progress> {
-        self.conversation.progress()
-    }
-
-    /// Acknowledged ticks of each job.
-    pub fn acknowledged(&self) -> impl Iterator<Item = u32> {
-        self.conversation.acknowledged()
-    }
-
-    /// Counts of frames and replies.
-    pub const fn counts(&self) -> Counts {
-        self.conversation.counts()
-    }
-
-    /// Whether all jobs are done or given up.
-    pub fn is_over(&self) -> bool {
-        self.conversation.is_over()
-    }
-
     /// The last cycle with an event.
     pub const fn last_active(&self) -> Instant {
         self.last_active

@@ -20,7 +20,6 @@ const MAX_DEPTH: u64 = u8::MAX as u64;
 
 /// Why packets cannot be paced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum NotPaced {
     /// The scenario has no packets.
     Nothing,
@@ -165,7 +164,7 @@ impl RawHost {
         u64::from(self.lead) * self.queue.tick_ns
     }
 
-    /// When the next packet is due; `None` when all are sent.
+    /// `None` when all packets are sent.
     pub fn due_ns(&self) -> Option<u64> {
         let next = self.schedule.get(self.sent)?;
         Some(nanos((next.start - self.first).0, self.clock_hz).saturating_sub(self.slack_ns()))
@@ -226,7 +225,6 @@ fn nanos(cycles: u64, clock_hz: u32) -> u64 {
 
 /// The report about raw packets. They have no replies, so nothing is confirmed.
 #[derive(Clone, Debug)]
-#[allow(missing_docs, reason = "the names say what is counted")]
 pub struct RawReport {
     pub packets: usize,
     pub sent: usize,

@@ -66,7 +66,7 @@ impl Bus {
     }
 
     pub(crate) fn is_idle(&self) -> bool {
-        self.host.as_ref().is_none_or(FramedHost::is_over)
+        self.host.as_ref().is_none_or(|host| host.conversation().is_over())
             && self.devices().all(Device::is_idle)
             && self.line.is_over()
     }

@@ -27,7 +27,7 @@ impl Random {
     }
 }
 
-/// The random faults of a line; a seed always gives the same faults.
+/// The random faults of a line.
 #[derive(Clone, Debug)]
 pub struct Noise {
     rates: Rates,

@@ -5,7 +5,6 @@ use core::fmt;
 /// Upper ends of the bars in microseconds; the last bar has no end.
 const BARS_US: [u64; 9] = [100, 250, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000];
 
-/// A histogram of delays.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lateness {
     bars: [u64; BARS_US.len() + 1],
@@ -13,7 +12,6 @@ pub struct Lateness {
 }
 
 impl Lateness {
-    /// Adds a delay.
     pub fn add(&mut self, late_ns: u64) {
         let bar = BARS_US.iter().position(|&end| late_ns <= 1000 * end).unwrap_or(BARS_US.len());
         if let Some(count) = self.bars.get_mut(bar) {
@@ -22,7 +20,6 @@ impl Lateness {
         self.worst_ns = self.worst_ns.max(late_ns);
     }
 
-    /// Number of delays.
     pub fn count(&self) -> u64 {
         self.bars.iter().sum()
     }

@@ -20,9 +20,7 @@ pub struct LiveTrace {
 pub struct PositionCurve {
     /// Later than requested if the ring begins later.
     pub from: Instant,
-    /// Time of the last point.
     pub to: Instant,
-    /// The positions of each channel.
     pub channels: Vec<Vec<i32>>,
 }
 
@@ -32,12 +30,10 @@ impl LiveTrace {
         Self { records: VecDeque::new(), max: max.max(1), before: Levels::RESET, is_cut: false }
     }
 
-    /// Number of records.
     pub fn len(&self) -> usize {
         self.records.len()
     }
 
-    /// Whether there are no records.
     pub fn is_empty(&self) -> bool {
         self.records.is_empty()
     }

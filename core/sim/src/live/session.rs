@@ -47,11 +47,9 @@ const INVALID_END: [u8; 2] = [0xff, 0];
 /// A byte of a controller's reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReplyByte {
-    /// Index of the controller.
     pub controller: usize,
     /// First cycle after its stop bit.
     pub end: Instant,
-    /// The value.
     pub byte: u8,
 }
 
@@ -147,7 +145,6 @@ impl Session {
         &self.experiment
     }
 
-    /// The run.
     pub const fn run(&self) -> &Run {
         &self.run
     }
@@ -157,7 +154,6 @@ impl Session {
         Instant(self.run.cycles().0.saturating_sub(1))
     }
 
-    /// Number of received bytes.
     pub const fn received(&self) -> u64 {
         self.received
     }
@@ -392,7 +388,6 @@ impl<S: Sink> Sink for SessionSink<'_, S> {
     }
 }
 
-/// A recorded session, as a scenario that replays it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// The same controllers and line, with the received bytes as the source.
@@ -413,14 +408,7 @@ pub enum NotTheSession {
     /// The scenario of the recording has problems.
     Refused(Vec<Problem>),
     /// The trace of a controller has another digest.
-    Differs {
-        /// Index of the controller.
-        controller: usize,
-        /// Digest in the session.
-        session: u64,
-        /// Digest in the replay.
-        replay: u64,
-    },
+    Differs { controller: usize, session: u64, replay: u64 },
     /// The panels have another digest.
     PanelsDiffer,
 }

@@ -30,7 +30,6 @@ const WAIT_ROUND: u64 = 1_000_000;
 /// A reply and its delay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// The reply.
     pub reply: Reply,
     /// Its positions, if it has any.
     pub positions: Option<Positions>,
@@ -38,14 +37,12 @@ pub struct Answer {
     pub delay: Cycles,
 }
 
-/// First reported status and positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Opening {
     status: Option<Status>,
     positions: Option<Positions>,
 }
 
-/// The model of a real device.
 #[derive(Clone)]
 pub struct Twin {
     session: Session,

@@ -217,7 +217,7 @@ impl AttachedPlants {
             run.run_to(stop, &mut plant_sinks);
             records += plant_sinks.iter().map(|sink| sink.records).max().unwrap_or(0);
             if run.all_have_reached(stop) {
-                self.after(run, None, sinks, observers);
+                self.apply_feedback(run, None, sinks, observers);
             } else {
                 self.pending_stop = Some(stop);
             }
@@ -240,12 +240,12 @@ impl AttachedPlants {
         run.clock(&mut self.plant_sinks(u64::MAX, sinks, observers));
         self.pending_stop = None;
         let idle_since = self.idle_since.unwrap_or_else(|| run.furthest_cycle());
-        self.after(run, Some(idle_since), sinks, observers);
+        self.apply_feedback(run, Some(idle_since), sinks, observers);
     }
 
-    /// Applies the feedback of the plants in the cycle just run, and finds the end. `first_idle` is the first idle cycle if
-    /// the run goes clock by clock.
-    fn after(
+    /// Applies the feedback of the plants in the cycle just run, and finishes at the end. `first_idle` is the first idle
+    /// cycle if the run goes clock by clock.
+    fn apply_feedback(
         &mut self,
         run: &mut Controllers,
         first_idle: Option<Instant>,
@@ -253,26 +253,26 @@ impl AttachedPlants {
         observers: &mut [impl Observer],
     ) {
         let now = run.furthest_cycle();
-        let idle = |this: &Self, run: &Controllers| {
-            let last =
-                this.plants.iter().map(|attached| attached.last_record).max().unwrap_or(Instant::RESET);
-            run.idle_since(last).map(|idle_since| first_idle.unwrap_or(idle_since))
-        };
-        self.idle_since = idle(self, run);
+        self.idle_since = self.find_idle(run, first_idle);
         let end = self.end(run);
-        // The run went beyond its end.
         let is_past = end.is_some_and(|end| end < now);
         if !is_past {
             let plant_sinks = self.plant_sinks(u64::MAX, sinks, observers);
             for (index, mut sink) in plant_sinks.into_iter().enumerate() {
                 sink.feed_back(run, index, Instant(now.0 - 1));
             }
-            self.idle_since = idle(self, run);
+            // The feedback may have ended the idle time.
+            self.idle_since = self.find_idle(run, first_idle);
         }
-        let is_end = end == Some(now) && (run.end.is_some() || idle(self, run).is_some());
+        let is_end = end == Some(now) && (run.end.is_some() || self.idle_since.is_some());
         if let Some(end) = end.filter(|_| is_past || is_end) {
             self.finish_at(end, sinks, observers);
         }
+    }
+
+    fn find_idle(&self, run: &Controllers, first_idle: Option<Instant>) -> Option<Instant> {
+        let last = self.plants.iter().map(|attached| attached.last_record).max().unwrap_or(Instant::RESET);
+        run.idle_since(last).map(|idle_since| first_idle.unwrap_or(idle_since))
     }
 
     fn finish_at(&mut self, end: Instant, sinks: &mut [impl Sink], observers: &mut [impl Observer]) {

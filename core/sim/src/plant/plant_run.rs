@@ -50,7 +50,6 @@ impl<S: Sink, O: Observer> PlantRun<S, O> {
         self.sinks.into_iter().zip(self.observers).collect()
     }
 
-    /// Runs to the end.
     pub fn finish(&mut self) {
         while !self.advance(Cycles(1 << 32)) {}
     }

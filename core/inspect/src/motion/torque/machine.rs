@@ -12,7 +12,6 @@ const MILLI: f64 = 1000.0;
 const GRAM_CM2: f64 = 1e-7;
 const MIN_PERIOD_S: f64 = 1e-6;
 
-/// An axis' motor, driver and load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Machine {
     constant: f64,
@@ -92,7 +91,6 @@ impl Machine {
         self.working_rate
     }
 
-    /// Torque of the load in mN*m.
     pub fn load_mn_m(&self) -> f64 {
         self.load_n_m * MILLI
     }

@@ -1,8 +1,7 @@
-//! One time of a plan.
+//! Needed and available torque at one time of a plan.
 
 use serde::Serialize;
 
-/// Needed and available torque at one time of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Moment {
     pub at_s: f64,

@@ -116,11 +116,9 @@ impl Position<'_> {
     }
 }
 
-/// The maximum rate next to a reversal, a stop, or an end.
-///
-/// It is the rate of the next step or of the next half full step, whichever is lower, because shorter travel hardly moves
-/// the rotor. A stop is an interval longer than the natural period, or than half a full step (at least four steps) takes
-/// at that rate.
+/// The maximum rate next to a reversal, a stop, or an end: that of the next step or of the next half full step,
+/// whichever is lower, because shorter travel hardly moves the rotor. A stop is an interval longer than the natural
+/// period, or than half a full step (at least four steps) takes at that rate.
 fn jump(machine: &Machine, steps: &[Step], clock_hz: u32) -> f64 {
     let period_s = machine.natural_period_s();
     let half = machine.microsteps_of_half_a_step();

@@ -22,9 +22,9 @@ pub struct Ramps {
     pub too_fast: bool,
     /// The longest ramp of the move: half of its duration.
     pub room_s: f64,
-    /// The shortest and longest ramp above 0 with enough torque and within the stated rate.
+    /// The widest range of ramps above 0 with enough torque and within the working rate.
     pub enough_s: Option<(f64, f64)>,
-    /// If there is none: ramps with enough torque, but above the stated rate.
+    /// If there is none: ramps with enough torque, but above the working rate.
     pub too_fast_s: Option<(f64, f64)>,
     /// Torque and rate suffice without ramps, except for the jump.
     pub without_ramps: bool,

@@ -30,7 +30,6 @@ pub struct TorqueReport {
     pub curve: TorqueCurve,
 }
 
-/// The ramps of move `index`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MoveRamps {
     pub index: usize,
@@ -79,7 +78,7 @@ impl TorqueReport {
             over_working_rate: demand.over_working_rate,
             jump: demand.jump,
             min_margin: demand.min_margin,
-            total: demand.total,
+            total: demand.shortage_count,
             window_s: None,
             ramps: Vec::new(),
             shortages: demand.shortages.into_iter().take(MAX_SHORTAGES).collect(),

@@ -144,7 +144,7 @@ fn song_2021s_turn_leaves_its_motor_nearly_all_of_its_torque() {
 #[test]
 fn a_shortage_reports_times_and_worst_moment() {
     let found = demand(r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}"#, TURN);
-    assert_eq!((found.total, found.shortages.len(), found.is_met()), (1, 1, false), "{found:?}");
+    assert_eq!((found.shortage_count, found.shortages.len(), found.is_met()), (1, 1, false), "{found:?}");
     let shortage = found.shortages[0];
     let greatest = 16_000.0 * PI / 0.4 * 2.0 * PI / 3200.0;
     let phase = libm::asin((400.0 / 2.0_f64.sqrt() - 100.0) / greatest);
@@ -158,7 +158,7 @@ fn a_shortage_reports_times_and_worst_moment() {
     assert_eq!(demand(r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}"#, left), found);
     // Without a load both ramps are alike.
     let found = demand(r#"{"load_inertia_g_cm2":14955}"#, TURN);
-    assert_eq!(found.total, 2);
+    assert_eq!(found.shortage_count, 2);
     let [up, down] = found.shortages[..] else { panic!("{found:?}") };
     close(up.from_s + down.to_s, 0.4, 1e-9);
     assert!(down.worst.needed_mn_m < 0.0 && up.worst.needed_mn_m > 0.0);
@@ -171,7 +171,7 @@ fn a_plateau_above_the_torque_rate_is_one_shortage() {
     close(machine(motor).available_mn_m(max), 200.0, 1e-9);
     let moves = format!(r#"{{"constant":{{"speed":{{"steps_s":{}}}}}}},{{"dwell":{{}}}}"#, max * 1.01);
     let found = demand(motor, &moves);
-    assert_eq!(found.total, 1, "{found:?}");
+    assert_eq!(found.shortage_count, 1, "{found:?}");
     let shortage = found.shortages[0];
     assert_eq!(shortage.from_s, 0.0);
     close(shortage.to_s, 1000.0 / (max * 1.01), 1e-9);
@@ -201,7 +201,7 @@ fn a_motor_without_driving_current_cannot_follow() {
     assert!(machine(weak).available_mn_m(max * 1.001) < 0.0);
     let constant = r#"{"constant":{"speed":{"steps_s":100000}}}"#;
     let found = demand(weak, constant);
-    assert_eq!(found.total, 1, "{found:?}");
+    assert_eq!(found.shortage_count, 1, "{found:?}");
     assert!(
         found.shortages[0].worst.margin_mn_m() < 0.0 && found.min_margin == Some(found.shortages[0].worst)
     );
@@ -218,7 +218,7 @@ fn a_motor_without_driving_current_cannot_follow() {
 #[test]
 fn a_working_rate_limits_in_addition_to_torque() {
     let found = demand(r#"{"working_rate_hz":15999}"#, TURN);
-    assert_eq!((found.total, found.over_working_rate), (0, Some(16_000.0)));
+    assert_eq!((found.shortage_count, found.over_working_rate), (0, Some(16_000.0)));
     assert!(!found.is_met());
     assert!(demand(r#"{"working_rate_hz":16000}"#, TURN).is_met());
     // Without a load an ideal motor has some torque at every rate.
@@ -373,7 +373,7 @@ fn steps_and_their_plan_have_the_same_shortage() {
     let motor = r#"{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}"#;
     let (machine, steps) = steps_of(motor, TURN);
     let (plan, found) = (demand(motor, TURN), Demand::of_steps(&machine, &steps, 16_000_000));
-    assert_eq!((plan.total, found.total), (1, 1));
+    assert_eq!((plan.shortage_count, found.shortage_count), (1, 1));
     let start_s = steps[0].cycle as f64 / 16e6;
     let [by_plan, by_steps] = [&plan, &found].map(|demand| demand.shortages[0]);
     for (planned, stepped) in [(by_plan.from_s, by_steps.from_s), (by_plan.to_s, by_steps.to_s)] {

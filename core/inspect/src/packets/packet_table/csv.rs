@@ -9,13 +9,11 @@ use core::fmt::{self, Write};
 use stepscope_peripheral::units::Instant;
 
 impl PacketTable<'_> {
-    /// Writes the header.
     pub fn write_head(out: &mut impl Write) -> fmt::Result {
         out.write_str("start_cycle,end_cycle,bytes,outcome,tick_start_cycle,tick_end_cycle,kind,")?;
         out.write_str("number,start_s,end_s,gap_s,meaning,tick_start_s,tick_end_s\n")
     }
 
-    /// Writes row `index`.
     pub fn write_row(&self, out: &mut impl Write, index: usize) -> fmt::Result {
         let (Some(row), Some(kind)) = (self.logged(index), self.kind(index)) else { return Ok(()) };
         write!(out, "{},{},", row.start.0, row.end.0)?;

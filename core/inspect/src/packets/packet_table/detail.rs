@@ -12,7 +12,6 @@ const DE_BITS: u64 = 10;
 /// Maximum rows between a reply and its frame.
 const NEAR: usize = 64;
 
-/// One row in full.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Detail {
     #[serde(flatten)]
@@ -41,7 +40,6 @@ pub struct FieldRow {
 }
 
 impl PacketTable<'_> {
-    /// Row `index` in full.
     pub fn detail(&self, index: usize) -> Option<Detail> {
         let (row, dissection) = (self.row(index)?, self.dissect(index)?);
         let (check, sums) = match dissection.crc {

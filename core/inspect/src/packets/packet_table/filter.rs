@@ -14,7 +14,6 @@ pub struct Filter {
     next: usize,
 }
 
-/// What to filter and search.
 #[derive(Debug, Default)]
 pub struct Request {
     needle: Option<Needle>,
@@ -133,7 +132,6 @@ fn parse_hex(text: &str) -> (Vec<u8>, String) {
 }
 
 impl Filter {
-    /// A filter that has seen no row yet.
     pub fn new(request: Request) -> Self {
         Self { request: Some(request).filter(|request| !request.is_any()), ..Self::default() }
     }

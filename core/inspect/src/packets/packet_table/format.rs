@@ -17,7 +17,6 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// The mark of an outcome.
     pub const fn of(outcome: RowOutcome) -> Self {
         match outcome {
             RowOutcome::Packet(PacketOutcome::Queued)
@@ -30,7 +29,6 @@ impl Mark {
         }
     }
 
-    /// Its name in outputs.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Good => "good",

@@ -21,7 +21,6 @@ impl PacketTable<'_> {
             .is_some_and(|row| matches!(row.outcome, RowOutcome::Reply(_) | RowOutcome::Recorded))
     }
 
-    /// The bytes of row `index` on the line.
     pub fn line_bytes(&self, index: usize) -> Vec<LineByte> {
         self.line_bytes_from(index, 0).collect()
     }

@@ -5,11 +5,11 @@ use crate::hosts::framed_host::{Counts, GivenUp};
 use core::ops::AddAssign;
 
 macro_rules! tally {
-    ($($(#[doc = $doc:literal])+ $field:ident,)+) => {
+    ($($(#[doc = $doc:literal])* $field:ident,)+) => {
         /// Counts over several seeds.
         #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
         pub struct Tally {
-            $($(#[doc = $doc])+ pub $field: u64,)+
+            $($(#[doc = $doc])* pub $field: u64,)+
         }
 
         impl AddAssign for Tally {
@@ -21,7 +21,6 @@ macro_rules! tally {
 }
 
 tally! {
-    /// Seeds that were run.
     seeds,
     /// Seeds with an uncommanded executed tick, or a lost one that the host counts as done.
     wrong_seeds,
@@ -35,29 +34,21 @@ tally! {
     cut,
     /// Frames sent, with repetitions; on a raw line the sends.
     frames,
-    /// Frames that the host sent again.
     repeated,
-    /// How often the host of a framed line crashed.
     crashes,
     /// Frames whose check failed (CRC).
     bad_check,
-    /// SHORT_PACKET of frames and packets.
     short,
     /// Frames with a byte too many (OVERLONG).
     overlong,
-    /// Framing errors (FRAMING).
     framing,
-    /// Complete frames and packets that were refused.
     refused,
     /// Repeated frames that were acknowledged again.
     acknowledged_again,
-    /// Replies that the controllers sent.
     replies,
     /// Replies that the host did not receive completely.
     replies_lost,
-    /// Ticks commanded.
     commanded,
-    /// Ticks executed.
     executed,
     /// Ticks that the host did not send, because it gave up or the run ended.
     unreached,
@@ -69,7 +60,6 @@ tally! {
     missing,
     /// Steps by which wrong ticks differ, and those of duplicated ticks.
     wrong_steps,
-    /// Steps of missing ticks.
     missing_steps,
     /// Distance of the positions from the sums of the ticks, in steps over all channels.
     position_error,

@@ -28,7 +28,6 @@ const LAST_BEGIN: u64 = END_OF_TIME - (1 << 46);
 
 /// The host's counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say what is counted")]
 pub struct Counts {
     pub frames: u64,
     pub repeated: u64,
@@ -113,12 +112,10 @@ impl Conversation {
         self
     }
 
-    /// Progress of each job.
     pub fn progress(&self) -> impl Iterator<Item = Progress> {
         self.peers.iter().map(|peer| peer.progress)
     }
 
-    /// Acknowledged ticks of each job.
     pub fn acknowledged(&self) -> impl Iterator<Item = u32> {
         self.peers.iter().map(|peer| peer.acknowledged)
     }
@@ -138,12 +135,10 @@ impl Conversation {
         self.peers.get_mut(job).map_or_else(Vec::new, |peer| peer.sums(ticks))
     }
 
-    /// Counts of frames and replies.
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Whether all jobs are done or given up.
     pub fn is_over(&self) -> bool {
         self.phase == Phase::Over
     }

@@ -12,11 +12,9 @@ use stepscope_scenario::Host as Settings;
 /// The ticks for a controller.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// Address of the controller.
     pub address: u8,
     /// Channels of the controller, which are the bytes of a tick.
     pub channels: u8,
-    /// Length of a tick.
     pub tick: Cycles,
     /// Ticks that the controller can queue.
     pub queue_depth: u8,
@@ -25,7 +23,6 @@ pub struct Job {
 }
 
 impl Job {
-    /// Number of ticks.
     pub fn ticks(&self) -> u32 {
         (self.commands.len() / usize::from(self.channels.max(1))) as u32
     }
@@ -63,7 +60,6 @@ pub enum Progress {
 
 /// Why the host gave up on a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum GivenUp {
     /// No reply to any attempt.
     NoReply,
@@ -76,7 +72,6 @@ pub enum GivenUp {
     /// Its positions are not the sums of its ticks.
     Displaced {
         channel: u8,
-        /// Ticks of the job done by then.
         ticks: u32,
         /// The sums of these ticks.
         expected: i32,
@@ -160,24 +155,20 @@ impl fmt::Display for Progress {
     }
 }
 
-/// The reports of a controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Known {
     /// The first status while it was idle.
     pub opening: Option<Status>,
     /// The status after the opening tick of a real line.
     pub started: Option<Status>,
-    /// The last status.
     pub last: Option<Status>,
     /// Ticks of the job that are done, by the last plausible reply.
     done: Option<u32>,
     /// The positions before the first tick.
     pub opening_positions: Option<Positions>,
-    /// The last positions.
     pub positions: Option<Positions>,
     /// Whether it does not support POSITIONS.
     pub hides_positions: bool,
-    /// Whether it has acknowledged STOP.
     pub stop_acknowledged: bool,
 }
 
@@ -194,7 +185,6 @@ impl Known {
     }
 }
 
-/// A controller as the host sees it.
 #[derive(Clone, Debug)]
 pub(super) struct Peer {
     pub(super) job: Job,
@@ -206,14 +196,11 @@ pub(super) struct Peer {
     pub(super) known: Known,
     /// Invariant: at most the ticks of the job.
     pub(super) acknowledged: u32,
-    /// Sequence number of the next TICKS frame.
     pub(super) seq: u8,
     /// Free entries of the controller's queue.
     pub(super) free: u32,
-    /// When the next frame may be sent.
     pub(super) ready_at: Instant,
     pub(super) queue_empty_at: Instant,
-    /// Attempts of the pending frame.
     pub(super) attempts: u8,
     pub(super) frames_without_progress: u32,
     /// Whether the next frame must begin with a delimiter, which ends an incomplete frame in the receiver.

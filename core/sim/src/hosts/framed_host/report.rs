@@ -21,18 +21,12 @@ pub fn for_real_line(mut scenario: Scenario) -> Scenario {
     scenario
 }
 
-/// The report about one controller.
 #[derive(Clone, Debug)]
 pub struct ReportRow {
-    /// Index of the controller in the scenario.
     pub controller: usize,
-    /// Its address on the line.
     pub address: u8,
-    /// Ticks of the job.
     pub ticks: u32,
-    /// Acknowledged ticks.
     pub acknowledged: u32,
-    /// How far the host has come.
     pub progress: Progress,
     /// Positions after the done ticks, if the start is known.
     pub expected: Option<Vec<i32>>,
@@ -40,7 +34,6 @@ pub struct ReportRow {
     pub bounds: Option<(Vec<i32>, Vec<i32>)>,
     /// Confirmed ticks.
     pub done: Option<u32>,
-    /// The reports of the controller.
     pub known: Known,
     stopped: bool,
 }
@@ -122,12 +115,9 @@ impl fmt::Display for ReportRow {
     }
 }
 
-/// The report about all controllers with ticks.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// One per controller.
     pub rows: Vec<ReportRow>,
-    /// Counts of frames and replies.
     pub counts: Counts,
 }
 
@@ -184,7 +174,6 @@ impl fmt::Display for Report {
 
 /// The status line during a conversation; ticks are those of all jobs together.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[allow(missing_docs, reason = "the names say what is counted")]
 pub struct HostStatus {
     pub progress: Vec<Progress>,
     pub accepted: u64,

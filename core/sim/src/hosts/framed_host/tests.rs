@@ -52,10 +52,10 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
     let (mut device, mut ticks, mut frames) = (Device::new(&config), Executed::default(), Vec::new());
     for now in 0..1_000_000 {
         let now = Instant(now);
-        if host.is_over() && device.is_idle() {
+        if host.conversation().is_over() && device.is_idle() {
             let executed = ticks.0.iter().flat_map(|tick| tick[..2].to_vec()).collect();
-            let progress = host.progress().next().expect("there is one job");
-            return (executed, progress, host.counts(), frames);
+            let progress = host.conversation().progress().next().expect("there is one job");
+            return (executed, progress, host.conversation().counts(), frames);
         }
         if line.next_change() == now {
             line.change();
@@ -453,5 +453,5 @@ fn a_framed_job_is_done() {
     let framed = r#"{ "line": { "protocol": "framed" } }"#;
     let run = Experiment::from_json(framed).expect("no problems").run(&mut Vec::<Record>::new());
     let host = run.host().expect("a framed line has one");
-    assert!(host.progress().all(|progress| progress == Progress::Done));
+    assert!(host.conversation().progress().all(|progress| progress == Progress::Done));
 }

@@ -15,7 +15,6 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Real time.
     pub const REAL_TIME: Self = Self { millionths: 1_000_000 };
 
     /// A pace in millionths of real time; `None` outside 0.001 to 100.
@@ -43,13 +42,12 @@ impl fmt::Display for Pace {
 /// How often and how far a clock was set back.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Setbacks {
-    /// Number of setbacks; consecutive ones count once.
+    /// Consecutive setbacks count once.
     pub count: u64,
     /// Their sum.
     pub cycles: Cycles,
 }
 
-/// The clock of a session.
 #[derive(Clone, Debug)]
 pub struct SessionClock {
     clock_hz: u32,
@@ -95,7 +93,6 @@ impl SessionClock {
         Instant(now - excess)
     }
 
-    /// The setbacks so far.
     pub const fn setbacks(&self) -> Setbacks {
         self.setbacks
     }

@@ -34,12 +34,10 @@ impl Input {
         Self::CAPACITY.saturating_sub(self.bytes.len())
     }
 
-    /// Number of bytes that wait.
     pub fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Whether no byte waits.
     pub fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
