@@ -55,13 +55,22 @@ test("a validation goes to the revision that it was asked for", async () => {
   assert.equal(made.blocked, 0);
 });
 
-test("typing runs once, after a rest", async () => {
+test("typing runs once after a pause if runs are long, and at once if they are short", async () => {
+  for (const [ms, expected] of [
+    [300, ["run 0", "run 3"]],
+    [10, ["run 0", "run 1", "run 2", "run 3"]],
+  ])
+    assert.deepEqual(await runsWhileTyping(ms), expected);
+});
+
+/** The runs of three changes with 50 ms between them, after a run of `ms`. */
+async function runsWhileTyping(ms) {
   mock.timers.enable({ apis: ["setTimeout"] });
   const made = bench();
   await made.runner.validate();
   made.runner.plan();
   mock.timers.tick(0);
-  made.dispatch({ type: "done", revision: 0, summary, ms: 1 });
+  made.dispatch({ type: "done", revision: 0, summary, ms });
   for (const value of [1, 2, 3]) {
     made.dispatch({ type: "edit", path: "title", value });
     await made.runner.validate();
@@ -69,15 +78,13 @@ test("typing runs once, after a rest", async () => {
     mock.timers.tick(50);
   }
   mock.timers.tick(1000);
-  assert.deepEqual(
-    made.calls.filter((call) => call.startsWith("run")),
-    ["run 0", "run 3"],
-  );
+  const runs = made.calls.filter((call) => call.startsWith("run"));
   made.runner.plan();
   mock.timers.tick(1000);
-  assert.equal(made.calls.filter((call) => call.startsWith("run")).length, 2);
+  assert.equal(made.calls.filter((call) => call.startsWith("run")).length, runs.length);
   mock.timers.reset();
-});
+  return runs;
+}
 
 test("a run without progress is shown as planning", async () => {
   mock.timers.enable({ apis: ["setTimeout"] });

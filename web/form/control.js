@@ -1,6 +1,7 @@
 /** A field of the form: label, input or select, unit, hint and error. Invalid text is dispatched as a draft. */
 import { element, flash, setText } from "../dom.js";
 import { get } from "../state/paths.js";
+import { addSteps } from "./steps.js";
 import { termButton } from "./term_button.js";
 import { convert, isHex, isList, isSame, listTools, meaning, print, read } from "./values.js";
 
@@ -18,6 +19,8 @@ import { convert, isHex, isList, isSame, listTools, meaning, print, read } from 
 
 /** A longer text moves its input below the label, in characters. */
 const MAX_INLINE = 12;
+/** The same for a choice, whose letters are narrower than digits on average. */
+const MAX_CHOICE = 20;
 let count = 0;
 
 /**
@@ -70,11 +73,17 @@ export function control(path, field, { dispatch, now }) {
       (message) => draft(message),
     ) ?? [];
   const box = element("div", { class: "box" }, input, ...(unitSelect ? [unitSelect] : unit ? [unit] : []), ...tools);
+  const label = termButton(field.label, field.term, { id: `${id}-label`, tabindex: "-1" });
+  const steps =
+    input instanceof HTMLInputElement
+      ? addSteps(path, field, { input, label, value: () => value, dispatch, now })
+      : null;
   const root = element(
     "div",
     { class: wide ? "field wide" : "field" },
-    termButton(field.label, field.term, { id: `${id}-label`, tabindex: "-1" }),
+    label,
     box,
+    ...(steps?.slider ? [steps.slider] : []),
     meaningNode,
     hint,
     error,
@@ -136,8 +145,10 @@ export function control(path, field, { dispatch, now }) {
         typed = null;
         if (before !== undefined && document.activeElement !== input) flash(input);
       }
-      root.classList.toggle("long", !wide && input.value.length > MAX_INLINE);
+      const { length } = input instanceof HTMLSelectElement ? (input.selectedOptions[0]?.text ?? "") : input.value;
+      root.classList.toggle("long", !wide && length > (input instanceof HTMLSelectElement ? MAX_CHOICE : MAX_INLINE));
       if (unitSelect && next && typeof next === "object") unitSelect.value = Object.keys(next)[0];
+      steps?.show(next, state);
       setText(meaningNode, meaning(next, field, state));
     },
     fail(message) {

@@ -10,6 +10,7 @@
  *   `wholes` of whole numbers, `segments`, and `points` of a curve.
  * @property {string} term    Id of its help text: its group and name in the schema.
  * @property {string} [unit]
+ * @property {string} [range]  Allowed values as text.
  * @property {{[value: string]: string}} [choices]
  * @property {{[unit: string]: string}} [units]  Labels of the units of a quantity, by their names in JSON.
  * @property {number} [rows]

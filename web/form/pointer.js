@@ -1,19 +1,34 @@
 /** Keeps fields under the focus and the pointer at their positions. */
 import { byId, setText } from "../dom.js";
 
-/** Shows the hint of the focused field below the form, so that no field moves. @param {HTMLElement} root */
+/** Maximum time between the clicks of a double-click, in ms. */
+const DOUBLE_CLICK_MS = 500;
+
+/** Shows the hint of the focused field below the form, in a line of constant height, so that no field moves. @param {HTMLElement} root */
 export function showHints(root) {
   const hint = byId("field-hint");
+  const hasKeys = matchMedia("(hover: hover)").matches;
+  const general = `Drag a label sideways to change its number${hasKeys ? ", or press ↑ or ↓ in the field; with Shift, ten steps" : ""}.`;
+  const show = (/** @type {string} */ text) => {
+    setText(hint, text || general);
+    hint.classList.toggle("general", !text);
+    hint.scrollTop = 0;
+  };
+  show("");
   root.addEventListener("focusin", ({ target }) => {
     const field = /** @type {Element} */ (target).closest(".field:not(.wide)");
-    setText(hint, field?.querySelector(".hint")?.textContent ?? "");
+    show(field?.querySelector(".hint")?.textContent ?? "");
   });
-  root.addEventListener("focusout", () => setText(hint, ""));
+  root.addEventListener("focusout", () => show(""));
 }
 
 /** Keeps the focused field visible when messages below the form reduce its height. @param {HTMLElement} scroller */
 export function keepFocusVisible(scroller) {
   let height = scroller.clientHeight;
+  let pressed = -DOUBLE_CLICK_MS;
+  scroller.addEventListener("pointerdown", ({ timeStamp }) => {
+    pressed = timeStamp;
+  });
   new ResizeObserver(() => {
     const before = height;
     height = scroller.clientHeight;
@@ -22,7 +37,10 @@ export function keepFocusVisible(scroller) {
     if (!shrank || !active || !scroller.contains(active)) return;
     const [field, visible] = [active.getBoundingClientRect(), scroller.getBoundingClientRect()];
     // Unless the user has scrolled the field out of view.
-    if (field.top >= visible.top && field.bottom <= visible.top + before) active.scrollIntoView({ block: "nearest" });
+    if (field.top < visible.top || field.bottom > visible.top + before) return;
+    // Nothing moves between the clicks of a double-click.
+    const wait = pressed + DOUBLE_CLICK_MS - performance.now();
+    setTimeout(() => document.activeElement === active && active.scrollIntoView({ block: "nearest" }), wait);
   }).observe(scroller);
 }
 

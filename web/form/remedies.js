@@ -22,9 +22,7 @@ export function showRemedy(state, sheets, apply) {
     root,
     element("h2", {}, remedy.wrong),
     element("p", {}, remedy.why),
-    button("Fix it", `Fix it: ${remedy.change}`, () => apply(remedy.scenario)),
-    " ",
-    element("span", { class: "range" }, remedy.change),
+    fixButton(remedy.change, () => apply(remedy.scenario)),
   );
 }
 
@@ -52,13 +50,14 @@ export async function showOffers(request, now, apply, released) {
       element(
         "p",
         {},
-        button("Fix it", `Fix it: ${change}`, () => isCurrent() && apply(readJson(scenario))),
-        " ",
-        element("span", { class: "range" }, change),
+        fixButton(change, () => isCurrent() && apply(readJson(scenario))),
       ),
     ),
   );
 }
+
+/** A button that names its effect. @param {string} change @param {() => void} apply */
+const fixButton = (change, apply) => button(`Fix it: ${change}`, `Fix it: ${change}`, apply);
 
 /** Pulses that violate the driver timing: use the minimum times of the data sheet. @param {State} state @param {DriverSheet[]} sheets @returns {Remedy | null} */
 function timingViolations({ scenario, result }, sheets) {
@@ -78,7 +77,7 @@ function timingViolations({ scenario, result }, sheets) {
     for (const [key, [name, needed]] of Object.entries(required)) {
       if (needed <= bus[key]) continue;
       fixed = set(fixed, `${path}.${key}`, needed);
-      changes.push(`${name} ${count(needed)} cycles${controllers.length ? ` on controller ${index + 1}` : ""}`);
+      changes.push(`${name} to ${count(needed)} cycles${controllers.length ? ` on controller ${index + 1}` : ""}`);
       wrongs.push(
         `${name} is ${si(bus[key] / clock, "s")} and needs at least ${count(needed)} cycles (${si(needed / clock, "s")})`,
       );
@@ -88,7 +87,7 @@ function timingViolations({ scenario, result }, sheets) {
   return {
     wrong: "The pulses do not meet the driver’s timing",
     why: `${sheet?.name ?? "The driver"}: ${[...new Set(wrongs)].join("; ")}. A driver can miss a short pulse. A pulse too soon after DIR can step in the old direction.`,
-    change: changes.join(", "),
+    change: `set ${changes.join(", ")}`,
     scenario: fixed,
   };
 }
@@ -137,7 +136,7 @@ function lostSteps({ scenario, derived, result }) {
   return {
     wrong: "Steps were lost on the line",
     why: `${missed[0][0].toUpperCase()}${missed.join("; ").slice(1)}. Raw packets have no checksum and are not repeated, so errors move the motors or lose steps.`,
-    change: "Use the framed protocol",
+    change: "use the framed protocol",
     scenario: set(scenario, "line.protocol", "framed"),
   };
 }

@@ -58,6 +58,7 @@ export function field(group, name) {
     kind: kindOf(type, unit),
     hint: hintOf({ unit, ...texts }, type === "bool" ? [] : wordsOf(type), labelAt),
     term: `${group}.${name}`,
+    range: texts.range,
     ...(unit && !units ? { unit } : {}),
     ...(wordsOf(type).length > 0 ? { choices: Object.fromEntries(words.map(({ name, label }) => [name, label])) } : {}),
     ...(units ? { units } : {}),

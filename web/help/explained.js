@@ -130,7 +130,7 @@ export const EXPLAINED = {
   ],
   "Motion.engine": [
     "Step generation",
-    "Ticks: the host sends the number of steps of each tick (RU 2704486). Segments: the controller runs the move without a host, from a table of intervals (Sonobe 2011, Zhang 2012, Song 2021).",
+    "Ticks: the host sends the number of steps of each tick (RU 2704486). Step table: a timer interrupt of the controller runs the move without a host, from a table of intervals (Sonobe 2011, Zhang 2012, Song 2021).",
   ],
   "Motor.holding_torque_mN_m": [
     "Holding torque",

@@ -2,26 +2,29 @@
 import { button, byId, element, fill } from "../dom.js";
 import { saveGuided } from "../shell/storage.js";
 
-/** @typedef {{title: string, text: string, at: string, view?: string}} Step  `at`: selector of its target; `view`: tab of the target on a narrow screen. */
+/** @typedef {{title: string, text: string, at: string, view?: string, touch?: string}} Step  `at`: selector of its target; `view`: tab of the target on a narrow screen; `touch`: its text without a mouse and keys. */
 
 /** @type {Step[]} */
 export const STEPS = [
   {
     title: "Choose a motion",
     at: "#fields > details",
-    text: "Choose a preset above, or enter a move here: type a distance such as 1.2k. The result updates at once. Click a word with a dotted underline to see its meaning.",
+    text: "Choose a preset above, or enter a move here: type a distance such as 1.2k, or drag its label sideways. The result updates at once. Click a word with a dotted underline to see its meaning.",
   },
   {
     title: "View the curves",
     at: "#view-motion",
     view: "motion",
     text: "Position, speed and acceleration: the thin line is the ideal curve, the wide one the actual pulses. Click to set cursor A, with Shift cursor B. Drag their handles to move them.",
+    touch:
+      "Position, speed and acceleration: the thin line is the ideal curve, the wide one the actual pulses. Tap to set cursor A, and drag its handle.",
   },
   {
     title: "Zoom into the pulses",
     at: "#view-pulses",
     view: "pulses",
     text: "Turn the wheel, or press + and the arrow keys, until you see single pulses. Every edge is cycle-exact. N goes to the next edge.",
+    touch: "Pinch until you see single pulses. Every edge is cycle-exact.",
   },
   {
     title: "Inspect the packets",
@@ -74,7 +77,8 @@ function createGuide({ dispatch, now }) {
     byId("welcome").hidden = true;
     mark(null);
     current = step;
-    const { title, text, view } = STEPS[step];
+    const { title, text: withKeys, touch, view } = STEPS[step];
+    const text = (matchMedia("(hover: none)").matches && touch) || withKeys;
     if (view) dispatch({ type: "view", view });
     // The target must be visible.
     const { form, folded, largest } = now().panes;

@@ -5,8 +5,8 @@ import { blockedBy } from "../state/queries.js";
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {Pick<import("../engine/engine.js").Engine, "latest" | "run" | "cancel" | "revive">} Engine */
 
-/** Delay after a change before it runs, in ms, so that typing a number is one run. */
-const RUN_DELAY_MS = 120;
+/** Maximum delay after a change before it runs, in ms, so that typing a number is one run. */
+const MAX_RUN_DELAY_MS = 120;
 /** A run without progress after this time is shown as planning, in ms. */
 const PLANNING_MS = 100;
 
@@ -59,7 +59,8 @@ export function createRunner({ engine, blocked, started, dispatch, now }) {
       clearTimeout(timer);
       const step = nextStep(now(), ran);
       if (step === "blocked") blocked();
-      else if (step === "run") timer = setTimeout(run, now().result ? RUN_DELAY_MS : 0);
+      // A run that is replaced costs at most about as long as the last one, so a short run need not wait.
+      else if (step === "run") timer = setTimeout(run, Math.min(MAX_RUN_DELAY_MS, now().result?.ms ?? 0));
     },
     cancel() {
       engine.cancel(now().revision);

@@ -22,6 +22,8 @@ export function createTabs({ dispatch }) {
   const sheet = /** @type {HTMLDetailsElement} */ (byId("sheet"));
   const fold = () => {
     sheet.open = !narrow.matches;
+    if (narrow.matches) byId("views").after(byId("about"));
+    else byId("derived").before(byId("about"));
   };
   narrow.addEventListener("change", fold);
   fold();

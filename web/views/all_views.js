@@ -1,5 +1,6 @@
 /** Creates all views, and the export panel with the files of the views. */
 import { NAMES } from "../state/views.js";
+import { createMini } from "./motion/mini.js";
 import { createMotion } from "./motion/motion.js";
 import { createMotorPane } from "./motor/pane.js";
 import { createPackets } from "./packets/packets.js";
@@ -32,7 +33,8 @@ export function createViews(page, drivers, samples) {
     timing: createTiming({ drivers, speak: pulses.speak, ...page }),
     study: createStudy({ samples, ...page }),
   };
-  return { all: NAMES.map((name) => views[/** @type {ViewName} */ (name)]), loadKeys: spectrum.load };
+  const all = NAMES.map((name) => views[/** @type {ViewName} */ (name)]);
+  return { all: [...all, createMini(page)], loadKeys: spectrum.load };
 }
 
 /** The content of the export panel, loaded on demand. @param {Page} page @param {import("../shell/lazy_popover.js").Popover} popover */

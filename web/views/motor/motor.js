@@ -17,8 +17,6 @@ import { channelOf, chartOf, marksOf, QUANTITIES, shownQuantities } from "./quan
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./numbers.js").Report} Report */
 
-/** Minimum height of a chart, in CSS pixels. */
-const CHART_PX = 78;
 /** Delay after a cursor moved before its values are spoken, in ms. */
 const SPEAK_MS = 500;
 /** Height of the time labels below the last chart, in CSS pixels. */
@@ -88,8 +86,8 @@ export function createMotor({ engine, dispatch, now }) {
       root.hidden = !shownQuantities.has(quantity.name);
       press.setAttribute("aria-pressed", String(!root.hidden));
     }
-    stack.style.gridTemplateRows = `repeat(${visibleCharts.length}, minmax(${CHART_PX}px, 1fr))`;
-    stack.style.minHeight = `${visibleCharts.length * CHART_PX + TIME_PX}px`;
+    stack.style.gridTemplateRows = `repeat(${visibleCharts.length}, minmax(var(--chart-px), 1fr))`;
+    stack.style.minHeight = `calc(${visibleCharts.length} * var(--chart-px) + ${TIME_PX}px)`;
   }
 
   /** @param {State} state */

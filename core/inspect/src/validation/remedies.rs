@@ -87,7 +87,7 @@ fn shorter_slots(scenario: &Scenario, slow: &[Rates]) -> Change {
         bus.step_period_cycles = bus.step_period_cycles.min(period);
     }
     let scope = if scenario.controllers.is_empty() { "" } else { " on all controllers" };
-    Some((format!("slot {period} cycles{scope}"), changed))
+    Some((format!("set the slot to {period} cycles{scope}"), changed))
 }
 
 fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
@@ -122,7 +122,7 @@ fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
         }
     }
     let times = texts.join(", ");
-    (!texts.is_empty()).then(|| (format!("more time for the move: {times}"), changed))
+    (!texts.is_empty()).then(|| (format!("give the move more time: {times}"), changed))
 }
 
 /// Formats a multiple without the product's last bits.
@@ -135,7 +135,7 @@ fn segments(scenario: &Scenario) -> Change {
     let mut changed = scenario.clone();
     let Source::Motion(motion) = &mut changed.source else { return None };
     motion.engine = MotionEngine::Segments;
-    Some(("step generation by segments".to_string(), changed))
+    Some(("use a step table (timer interrupt)".to_string(), changed))
 }
 
 #[cfg(test)]
@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn each_offer_is_valid() {
         let slow = r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#;
-        let expected = ["slot 1000 cycles", "more time for the move: 0.8 s", "step generation by segments"];
+        let expected = ["set the slot to 1000 cycles", "give the move more time: 0.8 s", "use a step table (timer interrupt)"];
         assert_eq!(offers(slow), expected);
         let found = Remedies::of(&ValidatedScenario::from_json(slow)).expect("too fast");
         for Offer { change, scenario } in found.offers {
@@ -163,12 +163,12 @@ mod tests {
     fn insufficient_changes_are_not_offered() {
         // A pulse of 1500 cycles does not fit into a slot of 1000.
         let long_pulse = r#"{"bus":{"step_period_cycles":2000,"slots":10,"pulse_width_cycles":1500}}"#;
-        assert_eq!(offers(long_pulse), ["more time for the move: 0.8 s"]);
+        assert_eq!(offers(long_pulse), ["give the move more time: 0.8 s"]);
         // Segments need a single controller.
         let two = r#"{"bus":{"step_period_cycles":2000,"slots":10},"line":{"address":1},
             "controllers":[{"address":2,"bus":{"step_period_cycles":2000,"slots":10},"axes":[]}],
             "source":{"motion":{"axes":[{"moves":[{"cosine":{}}]}]}}}"#;
-        assert_eq!(offers(two), ["slot 1000 cycles on all controllers", "more time for the move: 0.8 s"]);
+        assert_eq!(offers(two), ["set the slot to 1000 cycles on all controllers", "give the move more time: 0.8 s"]);
     }
 
     #[test]
@@ -187,6 +187,6 @@ mod tests {
         let slow = ValidatedScenario::from_json(r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#);
         let remedies = Remedies::of(&slow).expect("it is refused for its speed");
         assert_eq!(remedies.wrong, "The motion needs up to 16000 steps/s; the bus allows 8000.");
-        assert_eq!(remedies.offers[0].change, "slot 1000 cycles");
+        assert_eq!(remedies.offers[0].change, "set the slot to 1000 cycles");
     }
 }

@@ -43,7 +43,7 @@ settings! {
         pub axes: Vec<Axis> = vec![Axis::default()] => label("Axes").range_text("1 to 16, no more than `bus.channels`"),
         /// How steps are generated.
         pub engine: MotionEngine = MotionEngine::Ticks => label("Step generation")
-            .term("Step generation", "Ticks: the host sends the number of steps of each tick (RU 2704486). Segments: the controller runs the move without a host, from a table of intervals (Sonobe 2011, Zhang 2012, Song 2021).")
+            .term("Step generation", "Ticks: the host sends the number of steps of each tick (RU 2704486). Step table: a timer interrupt of the controller runs the move without a host, from a table of intervals (Sonobe 2011, Zhang 2012, Song 2021).")
             .from(PATENT),
     }
 }
@@ -61,9 +61,9 @@ pub enum MotionEngine {
 words! {
     MotionEngine {
         /// the host sends the number of steps of each tick
-        Ticks = "ticks" => label("ticks");
+        Ticks = "ticks" => label("ticks (packets from the host)");
         /// nothing is sent; each step comes in its exact cycle
-        Segments = "segments" => label("segments");
+        Segments = "segments" => label("step table (timer interrupt)");
     }
 }
 
