@@ -352,7 +352,10 @@ fn a_motion_too_fast_for_its_bus_is_offered_what_would_do() -> Result<()> {
             "document.querySelector('#offers h2')?.textContent.startsWith('The motion needs up to 16')",
         )
         .await?;
-        ensure!(page.text("#offers").await?.contains("set the slot to 1000 cycles"), "the first that would do");
+        ensure!(
+            page.text("#offers").await?.contains("set the slot to 1000 cycles"),
+            "the first that would do"
+        );
         page.click("#offers button").await?;
         page.until_digest(&Known::of(r#"{"bus":{"step_period_cycles":1000}}"#)?.digest).await?;
         ensure!(!page.visible("#offers").await?, "it was taken");

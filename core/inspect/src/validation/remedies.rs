@@ -150,7 +150,11 @@ mod tests {
     #[test]
     fn each_offer_is_valid() {
         let slow = r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#;
-        let expected = ["set the slot to 1000 cycles", "give the move more time: 0.8 s", "use a step table (timer interrupt)"];
+        let expected = [
+            "set the slot to 1000 cycles",
+            "give the move more time: 0.8 s",
+            "use a step table (timer interrupt)",
+        ];
         assert_eq!(offers(slow), expected);
         let found = Remedies::of(&ValidatedScenario::from_json(slow)).expect("too fast");
         for Offer { change, scenario } in found.offers {
@@ -168,7 +172,10 @@ mod tests {
         let two = r#"{"bus":{"step_period_cycles":2000,"slots":10},"line":{"address":1},
             "controllers":[{"address":2,"bus":{"step_period_cycles":2000,"slots":10},"axes":[]}],
             "source":{"motion":{"axes":[{"moves":[{"cosine":{}}]}]}}}"#;
-        assert_eq!(offers(two), ["set the slot to 1000 cycles on all controllers", "give the move more time: 0.8 s"]);
+        assert_eq!(
+            offers(two),
+            ["set the slot to 1000 cycles on all controllers", "give the move more time: 0.8 s"]
+        );
     }
 
     #[test]
