@@ -3,7 +3,6 @@ import { button, element } from "../dom.js";
 import { MAX_CHANNELS } from "../state/limits.js";
 import { get, set } from "../state/paths.js";
 import { pointsFirst } from "./fields.js";
-import { motorItems } from "./motor.js";
 import { fieldsOfKind, labels, maxLengthOf } from "./schema.js";
 import { removed } from "./structure.js";
 
@@ -59,12 +58,7 @@ function axisItem(kit, list, axes, index) {
     () => append(movesPath, (last) => structuredClone(last ?? { cosine: samples.moves.cosine })),
     axis.moves.length >= maxLengthOf("Axis", "moves"),
   );
-  return item(
-    `Axis ${index} · channel ${index}`,
-    path,
-    [head, ...fields, ...motorItems(kit, path, axis, name), ...moves, add],
-    `Mechanics.${kind}`,
-  );
+  return item(`Axis ${index} · channel ${index}`, path, [head, ...fields, ...moves, add], `Mechanics.${kind}`);
 }
 
 /** @param {Kit} kit @param {string} movesPath @param {any[]} moves @param {number} index */

@@ -21,6 +21,9 @@ export const pointsFirst = (fields) =>
     .map((each) => (each.kind === "points" ? { ...each, rows: 8 } : each))
     .sort((a, b) => Number(b.kind === "points") - Number(a.kind === "points"));
 
+/** The field of the sensor's bandwidth, which is in the spectrum. */
+export const SENSOR = { path: "analysis.sensor_hz", key: "sensor_hz" };
+
 /** Name and note of the experiment. */
 const ABOUT = ["title", "note"];
 
@@ -48,7 +51,7 @@ export const sections = () => [
   {
     title: labelOf("Scenario", "analysis"),
     open: false,
-    blocks: [{ path: "analysis", fields: fields("Analysis") }],
+    blocks: [{ path: "analysis", fields: fields("Analysis").filter(({ key }) => key !== SENSOR.key) }],
   },
   {
     title: "Clock and run",

@@ -6,13 +6,13 @@ import { blockedBy } from "../state/queries.js";
 import { controllerItems } from "./controllers.js";
 import { showAbout, showDerived } from "./derived.js";
 import { driverItems } from "./driver.js";
-import { glitchFields, OF_SEGMENTS, sections } from "./fields.js";
+import { glitchFields, OF_SEGMENTS, SENSOR, sections } from "./fields.js";
 import { saveFocus } from "./focus.js";
 import { createKit } from "./kit.js";
 import { plantItems } from "./plant.js";
 import { createPointerHold, keepFocusVisible, showHints } from "./pointer.js";
 import { showProblems } from "./problems.js";
-import { labelOf, labels, termOf } from "./schema.js";
+import { field, labelOf, labels, termOf } from "./schema.js";
 import { isUsed, needsRemedies, shapeOf } from "./shape.js";
 import { hasNoLine, replacedBySource } from "./source_kinds.js";
 import { SOURCES, withSource } from "./sources.js";
@@ -96,6 +96,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
       ]),
     );
     fill(root, kit.part("Source", true, sourceItems(scenario)), ...parts);
+    fill(byId("spectrum-sensor"), kit.row(SENSOR.path, field("Analysis", SENSOR.key)));
     restoreFocus();
   }
 

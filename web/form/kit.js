@@ -145,6 +145,7 @@ export function createKit({ samples, now, dispatch, rebuild }) {
   return {
     samples,
     now,
+    dispatch,
     ...structure,
     row,
     block,

@@ -69,7 +69,7 @@ fn the_tab_torque_has_the_cores_numbers_and_its_curves() -> Result<()> {
         let demand = Demand::of(&machine, &known.experiment.plans()[0]);
         let shortage = demand.shortages[0];
         let rows = cells(&page, "Too little torque").await?;
-        ensure!(rows.len() == 1 && demand.total == 1, "{rows:?}");
+        ensure!(rows.len() == 1 && demand.shortage_count == 1, "{rows:?}");
         let expected = [
             format!("{:.2} ms", shortage.from_s * 1e3),
             format!("{:.1} ms", shortage.to_s * 1e3),
@@ -141,7 +141,7 @@ fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants(
         );
         assert_eq!(jump, Some("50000 steps/s".to_owned()), "{expected:?}");
         let outcome: String = page.eval("document.getElementById('torque-verdict').textContent").await?;
-        assert_eq!(outcome.contains("Too little torque"), demand.total > 0, "{outcome}");
+        assert_eq!(outcome.contains("Too little torque"), demand.shortage_count > 0, "{outcome}");
         says("The acceleration of steps is averaged over the natural period of the rotor, 3.54").await?;
         page.picture("torque-of-steps").await?;
         // The other channel has no list.

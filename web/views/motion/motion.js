@@ -10,6 +10,7 @@ import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { onTimeAxis } from "../../time/timeline.js";
 import { chartOf, QUANTITIES, TIME_PX, unitOf, unitsOf, whyNoAcceleration } from "./bands.js";
 import { createCompare } from "./compare.js";
+import { createCornerHandles } from "./corner_handles.js";
 import { createReading } from "./reading.js";
 import { requestColumns } from "./request_columns.js";
 
@@ -33,6 +34,11 @@ export function createMotion({ engine, dispatch, now }) {
   let record = null;
   const reading = createReading({ engine, now });
   const handles = createHandles(byId("charts-handles"), () => plot, { dispatch, now });
+  const corners = createCornerHandles(
+    /** @type {HTMLCanvasElement} */ (byId("chart-speed")),
+    () => unitOf(now()).scale,
+    { dispatch, now },
+  );
   /** @type {import("./bands.js").MotionData | null} */
   let data = null;
   /** @type {Drawn[]} */
@@ -91,7 +97,9 @@ export function createMotion({ engine, dispatch, now }) {
       const canvas = /** @type {HTMLCanvasElement} */ (byId(`chart-${quantity}`));
       const { bands, caption, range, unit, chart } = drawn[index];
       setText(byId(`caption-${quantity}`), `${caption}, ${unit}`);
-      draw(canvas, chart);
+      if (quantity === "speed") Object.assign(chart.y, corners.range());
+      const area = draw(canvas, chart);
+      if (quantity === "speed") corners.render(state, area, chart.y);
       const text = bands.length === 0 ? "no data" : `from ${short(range.low)} to ${short(range.high)} ${unit}`;
       canvas.setAttribute("aria-label", `${caption} over time: ${text}`);
     }

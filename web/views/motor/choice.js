@@ -28,7 +28,9 @@ export function createChoice({ engine, dispatch, now }, fold) {
   /** @type {boolean | null} */
   let isSimulated = null;
   for (const select of [motor, drive]) select.addEventListener("change", describe);
-  fold.addEventListener("toggle", () => fold.open && !sheets && load());
+  const loadOnce = () => fold.open && !sheets && load();
+  fold.addEventListener("toggle", loadOnce);
+  loadOnce();
 
   async function load() {
     try {
