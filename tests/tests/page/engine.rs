@@ -89,21 +89,16 @@ fn a_keystroke_costs_one_reading_and_one_plan_also_with_its_run_link_and_study()
         let known = Known::of(&with_distance(160.0))?;
         page.until_digest(&known.digest).await?;
         page.until(&format!("location.hash.startsWith('#{}')", known.link)).await?;
-        assert_eq!(
-            page.eval::<[u32; 2]>(COUNTS).await?,
-            [validated + 5, runs + 1],
-            "five keystrokes, one run, one link"
-        );
+        let counts: [u32; 2] = page.eval(COUNTS).await?;
+        assert_eq!(counts[0], validated + 5, "five keystrokes");
+        // Two of the five can run; the first of them only if it began before the last keystroke.
+        assert!((runs + 1..=runs + 2).contains(&counts[1]), "{counts:?} after {runs} runs");
         page.click("#study").await?;
         for (tab, shown) in [("compare", "tbody tr"), ("torque", ".study-note button")] {
             page.click(&format!("#study-tab-{tab}")).await?;
             page.until(&format!("document.querySelector('#study-{tab} {shown}')")).await?;
         }
-        assert_eq!(
-            page.eval::<[u32; 2]>(COUNTS).await?,
-            [validated + 5, runs + 1],
-            "the study reuses the validated scenario"
-        );
+        assert_eq!(page.eval::<[u32; 2]>(COUNTS).await?, counts, "the study reuses the validated scenario");
         Ok(())
     })
 }
