@@ -2,7 +2,7 @@
  * The page: creates the state, the engine and the views. Each change flows from message to state, validation, run and
  * drawing. Folders and files only import from their left, which a test checks:
  *
- *     pkg -> pkg-tools -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> main.js
+ *     pkg -> pkg-tools -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> start -> main.js
  */
 
 import { byId } from "./dom.js";
@@ -13,7 +13,7 @@ import { problemText } from "./form/problem_places.js";
 import { createRemedyRequests } from "./form/remedy_requests.js";
 import { samples, setSchema } from "./form/schema.js";
 import { createCard } from "./help/card.js";
-import { createGuide, offerGuide } from "./help/guide.js";
+import { createGuide } from "./help/guide.js";
 import { createKeys } from "./help/keys.js";
 import { createHeader } from "./shell/header.js";
 import { createImports } from "./shell/imports.js";
@@ -35,6 +35,7 @@ import {
 } from "./shell/storage.js";
 import { createTabs } from "./shell/tabs.js";
 import { createTheme } from "./shell/theme.js";
+import { createStart } from "./start/start.js";
 import { errorMessage } from "./state/error_message.js";
 import { initial } from "./state/initial.js";
 import { blockedBy, isStale } from "./state/queries.js";
@@ -158,7 +159,6 @@ const runner = createRunner({
 async function start() {
   createTheme();
   createCard();
-  offerGuide();
   if (typeof WebAssembly !== "object") {
     byId("no-wasm").hidden = false;
     byId("status").textContent = "No engine";
@@ -186,7 +186,7 @@ async function start() {
   const remedies = createRemedyRequests(engine);
   const { all, loadKeys } = createViews(page, drivers, samples());
   views = [
-    createHeader({ presets, problemText, cancel: runner.cancel, retry: runner.retry, ...page }),
+    createHeader({ cancel: runner.cancel, retry: runner.retry, ...page }),
     createForm({ root: byId("fields"), samples: samples(), drivers, dispatch, remedies }),
     createTabs(page),
     createPanes(page),
@@ -200,6 +200,7 @@ async function start() {
     ),
     createLazyPopover("export", "export-panel", (popover) => exportsOf(page, popover), "export-status"),
     createSavedExperiments({ newExperiment: fallback, problemText, ...page }),
+    createStart({ presets, problemText, ...page }),
     link,
   ];
   createKeys(loadKeys);

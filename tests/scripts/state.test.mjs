@@ -107,6 +107,23 @@ const cases = [
     (s) => [s.window, s.cursors.a, s.markers[4], s.packet, s.row],
     [null, null, null, null, 0],
   ],
+  [
+    "another kind of source begins with fresh views, the same kind does not",
+    [
+      edit("source", { motion: {} }),
+      done(1),
+      window(10, 50),
+      cursor("a", 12),
+      edit("source", { motion: { engine: "ticks" } }),
+      done(2),
+    ],
+    (s) => {
+      const other = update(s, edit("source", { packets: {} }));
+      return [s.window, s.cursors.a, other.window, other.zooms, other.cursors.a];
+    },
+    [{ start: 10, end: 50 }, 12, null, [], null],
+  ],
+  ["only a scenario that replaces another counts as opened", [edit("a.b", 2), replace({}), undo], (s) => s.opened, 1],
   // Drafts: texts that are no number yet.
   ["a draft holds the run", [validated(0), draft("a.b")], (s) => [blockedBy(s), isStale(s)], ["problems", true]],
   [

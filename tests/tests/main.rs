@@ -20,4 +20,5 @@ mod properties;
 mod registers;
 mod shared_line;
 mod theme;
+mod thumbnails;
 mod web_layers;

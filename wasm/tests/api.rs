@@ -119,7 +119,7 @@ fn links_are_decoded_and_invalid_ones_state_the_error() {
         let opened = expect_ok(open_link(&format!("#{link}&v=views")));
         assert_eq!(text(&opened, "scenario"), scenario, "{}", text(preset, "id"));
         assert!(!get(&opened, "over_budget").is_truthy(), "{}", text(preset, "id"));
-        assert!(!text(preset, "document").is_empty());
+        assert!(!text(preset, "task").is_empty() && text(preset, "view").contains('t'));
     }
     let link = expect_ok(encode_link(&default_scenario()));
     for (given, why) in [

@@ -18,8 +18,8 @@ const MAX_FILE = 32 << 20;
 
 /** @typedef {{newExperiment: string, engine: import("../engine/engine.js").Engine, problemText: import("./open_file.js").ProblemText} & import("../state/types.js").Page} Given  `newExperiment` is JSON. */
 
-/** @param {Given} page @param {{close: () => void, changed: () => void, open: (saved: Scenario) => void}} panel  `changed`: the list has changed. */
-export function createExperiments({ newExperiment, engine, problemText, dispatch, now }, { close, changed, open }) {
+/** @param {Given} page @param {{close: () => void, open: (saved: Scenario) => void}} panel */
+export function createExperiments({ newExperiment, engine, problemText, dispatch, now }, { close, open }) {
   const name = /** @type {HTMLInputElement} */ (byId("experiment-name"));
   const saveButton = /** @type {HTMLButtonElement} */ (byId("experiment-save"));
   const list = byId("experiment-list");
@@ -104,11 +104,10 @@ export function createExperiments({ newExperiment, engine, problemText, dispatch
         ),
       ),
     );
-    changed();
   }
 
   function onOpen() {
-    name.value = String(now().scenario.title ?? "");
+    saveButton.disabled = false;
     setText(about, "");
     show();
   }

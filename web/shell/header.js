@@ -1,8 +1,6 @@
-/** The header: presets, undo and redo, the state of the run, and the messages below it. */
+/** Undo and redo, the state of the run in header and footer, and the messages below the header. */
 
-import { byId, element, fill, setOptions, setText } from "../dom.js";
-import { errorMessage } from "../state/error_message.js";
-import { readJson } from "../state/json.js";
+import { byId, setOptions, setText } from "../dom.js";
 import { si } from "../state/number.js";
 import { blockedBy, isStale, selected } from "../state/queries.js";
 import { registerCommands } from "./commands.js";
@@ -10,37 +8,20 @@ import { createHealth } from "./health.js";
 import { statusText } from "./run_texts.js";
 
 /** @typedef {import("../state/types.js").State} State */
-/** @typedef {import("../state/types.js").Preset} Preset */
-
-/** Recordings in the list of presets. */
-const RECORDED = [
-  ["recorded-step-table", "A step table on an ATmega328P"],
-  ["recorded-late-packet", "A packet that arrives too late"],
-];
 
 /** Progress is shown only for runs longer than this, in ms. */
 const PROGRESS_DELAY_MS = 90;
 
-/** @param {{presets: Preset[], cancel: () => void, retry: () => void, engine: import("../engine/engine.js").Engine, problemText: import("./open_file.js").ProblemText} & import("../state/types.js").Page} page */
-export function createHeader({ presets, cancel, retry, ...page }) {
+/** @param {{cancel: () => void, retry: () => void, engine: import("../engine/engine.js").Engine} & import("../state/types.js").Page} page */
+export function createHeader({ cancel, retry, ...page }) {
   const { dispatch } = page;
   const health = createHealth(page);
-  const preset = /** @type {HTMLSelectElement} */ (byId("preset"));
   const controller = /** @type {HTMLSelectElement} */ (byId("controller"));
   const undo = /** @type {HTMLButtonElement} */ (byId("undo"));
   const redo = /** @type {HTMLButtonElement} */ (byId("redo"));
   const progress = /** @type {HTMLProgressElement} */ (byId("progress"));
   let phaseStart = 0;
 
-  const recorded = RECORDED.map(([id, title]) => element("option", { value: id }, title));
-  const recordings = element("optgroup", { label: "Recordings" }, ...recorded);
-  fill(preset, element("option", { value: "" }, "Presets…"), ...groups(presets), recordings);
-  preset.disabled = false;
-  preset.addEventListener("change", () => {
-    if (RECORDED.some(([id]) => id === preset.value)) openSample(preset.value);
-    const chosen = presets.find(({ id }) => id === preset.value);
-    if (chosen) openPreset(chosen);
-  });
   controller.addEventListener("change", () => dispatch({ type: "controller", controller: Number(controller.value) }));
   undo.addEventListener("click", () => dispatch({ type: "undo" }));
   redo.addEventListener("click", () => dispatch({ type: "redo" }));
@@ -56,38 +37,10 @@ export function createHeader({ presets, cancel, retry, ...page }) {
     },
   ]);
 
-  /** @param {Preset} selected */
-  function openPreset({ id, scenario }) {
-    try {
-      dispatch({ type: "replace", scenario: readJson(scenario), origin: `preset:${id}` });
-    } catch (error) {
-      preset.value = "";
-      refuse("The preset", error);
-    }
-  }
-
-  /** @param {string} id */
-  async function openSample(id) {
-    preset.value = "";
-    try {
-      await (await import("./recording/recording.js")).openRecording(page, id);
-    } catch (error) {
-      refuse("The recording", error);
-    }
-  }
-
-  /** @param {string} what @param {unknown} error */
-  function refuse(what, error) {
-    const text = `${what} cannot be opened: ${errorMessage(error)}`;
-    dispatch({ type: "notice", notice: { kind: "error", text, location: null } });
-  }
-
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
     undo.disabled = state.past.length === 0 && Object.keys(state.drafts).length === 0;
     redo.disabled = state.future.length === 0;
-    const id = state.origin.startsWith("preset:") ? state.origin.slice("preset:".length) : "";
-    if (before?.origin !== state.origin) preset.value = id;
     if (before?.run.phase !== state.run.phase) phaseStart = performance.now();
     const running = state.run.phase === "running";
     const long = running && state.run.progress !== null && performance.now() - phaseStart > PROGRESS_DELAY_MS;
@@ -143,16 +96,4 @@ function messages(state) {
   const failed = byId("engine-message");
   failed.hidden = state.run.phase !== "failed";
   setText(/** @type {Element} */ (failed.firstElementChild), state.run.message);
-}
-
-/** Presets by paper. @param {Preset[]} presets */
-function groups(presets) {
-  /** @type {Map<string, HTMLOptGroupElement>} */
-  const made = new Map();
-  for (const { id, document: name, title } of presets) {
-    const group = made.get(name) ?? element("optgroup", { label: name || "Examples" });
-    made.set(name, group);
-    group.append(element("option", { value: id }, title));
-  }
-  return made.values();
 }

@@ -17,11 +17,11 @@ export function createLazyPopover(button, panel, load, about) {
   let content = null;
   const message = byId(about);
   // Input before the content is loaded would be lost, so the parts are inert. The panel itself is not: clicks would pass through
-  // it, and screen readers would not read the message.
+  // it, and screen readers would not read the message. A field that has the focus first keeps what is typed.
   /** @type {HTMLElement[]} */
   const parts = Array.from(byId(panel).querySelectorAll(":scope > *"));
   const setInert = (/** @type {boolean} */ isInert) => {
-    for (const part of parts) part.inert = isInert && !part.contains(message);
+    for (const part of parts) part.inert = isInert && !part.contains(message) && !part.querySelector("[autofocus]");
   };
   setInert(true);
   const own = dropDown(button, panel, async () => {

@@ -1,6 +1,10 @@
-/** The link in the address. It follows the scenario without history entries, and never overwrites own work. */
+/**
+ * The link in the address. It follows the scenario, and never overwrites own work. Opening another scenario adds a history entry, so
+ * that Back returns to the one before; edits add none.
+ */
 import { Dropped } from "../engine/request_slots.js";
 import { errorMessage } from "../state/error_message.js";
+import { DEPTH } from "../state/history.js";
 import { readJson } from "../state/json.js";
 import { blockedBy } from "../state/queries.js";
 import { undoHint } from "./storage.js";
@@ -16,10 +20,41 @@ export function createLink({ engine, dispatch, now }) {
   /** The fragment that this page last wrote or read. */
   let written = location.hash;
   let timer = 0;
+  /** The scenarios and views of the latest history entries. @type {Map<number, {scenario: import("../state/types.js").Scenario, origin: import("../state/types.js").Origin, view: string}>} */
+  const entries = new Map();
+  let entry = history.state?.entry ?? 0;
+  let lastEntry = entry;
+  /** Whether the browser has made the history entry of the scenario that is being opened. */
+  let isNavigation = false;
 
   window.addEventListener("hashchange", () => {
     if (location.hash !== written) read();
   });
+  window.addEventListener("popstate", ({ state: to }) => {
+    const known = entries.get(to?.entry);
+    // After a reload the link in the address is read instead.
+    if (!known) return;
+    written = location.hash;
+    entry = to.entry;
+    if (known.scenario !== now().scenario) open(known.scenario, known.origin, true);
+    dispatch({ type: "open", view: parseView(known.view) });
+  });
+
+  /** @param {import("../state/types.js").Scenario} scenario @param {import("../state/types.js").Origin} origin @param {boolean} isNavigated */
+  function open(scenario, origin, isNavigated) {
+    isNavigation = isNavigated;
+    dispatch({ type: "replace", scenario, origin });
+    isNavigation = false;
+  }
+
+  /** Adds a history entry for the scenario that was opened. @param {State} before */
+  function addEntry(before) {
+    if (history.state?.entry === undefined) history.replaceState({ own: before.origin === "own", entry }, "");
+    lastEntry += 1;
+    entry = lastEntry;
+    entries.delete(entry - DEPTH);
+    history.pushState({ own: now().origin === "own", entry }, "");
+  }
 
   /** The address of the page with the scenario, the view and the digests of a run. @param {string | undefined} digests @returns {Promise<string>} */
   async function address(digests) {
@@ -46,7 +81,7 @@ export function createLink({ engine, dispatch, now }) {
       // The user may have entered another address meanwhile.
       if (now().revision !== revision || location.hash !== before) return;
       // After a reload the state tells that the address only repeats the user's work.
-      history.replaceState({ own: now().origin === "own" }, "", full);
+      history.replaceState({ own: now().origin === "own", entry }, "", full);
       written = location.hash;
     } catch {
       // The scenario is too long for a link; the share panel reports it.
@@ -73,20 +108,26 @@ export function createLink({ engine, dispatch, now }) {
   async function read(isKnown = false) {
     const fragment = location.hash.replace(/^#/, "");
     written = location.hash;
+    const { own = false, entry: known = lastEntry + 1 } = history.state ?? {};
+    entry = known;
+    lastEntry = Math.max(lastEntry, entry);
     if (fragment === "") return;
     // A fragment of the page itself, such as `#views`, is not a link.
     if (document.getElementById(fragment)) return write();
-    await openLink(fragment, isKnown);
+    await openLink(fragment, { isKnown: isKnown || own, origin: own ? "own" : "shared", isNavigated: true });
   }
 
-  /** Opens a link as a shared scenario, and reports that or an error. @param {string} fragment @param {boolean} [isKnown] */
-  async function openLink(fragment, isKnown = false) {
+  /**
+   * Opens a link, by default as a shared scenario, and reports that or an error.
+   * @param {string} fragment @param {{isKnown?: boolean, origin?: import("../state/types.js").Origin, isNavigated?: boolean}} [how]
+   */
+  async function openLink(fragment, { isKnown = false, origin = "shared", isNavigated = false } = {}) {
     try {
       const reply = await engine.request("decode_link", fragment);
       if ("error" in reply) return refuse(reply.error);
       const scenario = readJson(reply.scenario);
       if (JSON.stringify(scenario) !== JSON.stringify(now().scenario)) {
-        dispatch({ type: "replace", scenario, origin: "shared" });
+        open(scenario, origin, isNavigated);
         const name = scenario.title ? `“${scenario.title}”` : "a scenario";
         const text = `Shared with you: ${name}.${undoHint()}`;
         if (!isKnown) dispatch({ type: "notice", notice: { kind: "info", text } });
@@ -104,6 +145,8 @@ export function createLink({ engine, dispatch, now }) {
 
   /** @param {State} state @param {State | undefined} before */
   function render(state, before) {
+    if (before && before.opened !== state.opened && !isNavigation) addEntry(before);
+    entries.set(entry, { scenario: state.scenario, origin: state.origin, view: viewOf(state) });
     if (
       viewOf(before) === viewOf(state) &&
       before?.scenario === state.scenario &&

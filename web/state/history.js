@@ -1,5 +1,5 @@
 /** Changes of the scenario, with undo and redo. */
-import { OWN_TEXTS } from "./initial.js";
+import { FRESH_VIEW, OWN_TEXTS } from "./initial.js";
 import { get, movedTo, set } from "./paths.js";
 
 /** @typedef {import("./types.js").State} State */
@@ -62,10 +62,15 @@ export function remember(state) {
   return { ...state, past: [...state.past, momentOf(state)].slice(-DEPTH), future: [] };
 }
 
+/** @param {Scenario} scenario */
+const sourceKind = ({ source }) => Object.keys(source ?? {})[0];
+
 /** @param {State} state @param {Scenario} scenario @param {Origin} origin @returns {State} */
 export function changed(state, scenario, origin) {
   return {
     ...state,
+    // The times of another kind of source are other times.
+    ...(sourceKind(state.scenario) === sourceKind(scenario) ? {} : FRESH_VIEW),
     scenario,
     origin,
     run: { phase: "waiting", progress: null, message: "" },

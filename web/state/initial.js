@@ -38,6 +38,7 @@ export function initial(scenario) {
     origin: "own",
     borrowed: OWN_TEXTS,
     revision: 0,
+    opened: 0,
     edited: null,
     past: [],
     future: [],

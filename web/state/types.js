@@ -11,7 +11,7 @@
  *   controllers: DerivedController[]}} Derived  Controllers in the order of the scenario, the first one at 0.
  * @typedef {{edges: number, packets: number, bytes: number, over_budget: boolean, message: string}} Cost
  * @typedef {{problems: Problem[], warnings: {path: string, message: string}[], scenario: string, derived: Derived | null, cost: Cost | null}} Validation
- * @typedef {{id: string, document: string, title: string, scenario: string}} Preset
+ * @typedef {{id: string, task: string, paper: string | null, view: string, title: string, scenario: string}} Preset  `view` is part `v` of a link.
  * @typedef {{id: string, name: string, source: string, rules: {[rule: string]: number}}} DriverSheet
  *
  * @typedef {{address: number | null, digest: string, records: number, edges: number, channels: number, positions: number[],
@@ -86,6 +86,7 @@
  * @property {Origin} origin
  * @property {Borrowed} borrowed
  * @property {number} revision      Counts the changes of the scenario.
+ * @property {number} opened        Counts the scenarios that replaced another as a whole.
  * @property {string | null} edited Path of the last edit, while more edits of it join the same step of undo.
  * @property {Moment[]} past
  * @property {Moment[]} future

@@ -23,6 +23,7 @@ export function update(state, message) {
         ...changed(remember(state), message.scenario, message.origin),
         borrowed: message.origin === "own" ? OWN_TEXTS : { title: true, note: true },
         ...FRESH_VIEW,
+        opened: state.opened + 1,
       };
     case "undo":
       return travel(state, "past", "future");

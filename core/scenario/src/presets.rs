@@ -7,8 +7,12 @@ use crate::Scenario;
 pub struct Preset {
     /// Name in files and on the command line.
     pub id: &'static str,
-    /// Heading in the menu: the paper that it comes from.
-    pub document: &'static str,
+    /// What it is for.
+    pub task: Task,
+    /// The paper that it comes from: author, year and subject.
+    pub paper: Option<&'static str>,
+    /// The view that it opens with, as part `v` of a link: time in cycles, tab of a narrow screen, selected views.
+    pub view: &'static str,
     /// The scenario as JSON.
     pub json: &'static str,
 }
@@ -20,22 +24,48 @@ impl Preset {
     }
 }
 
-const SINE: &str = "SWorldJournal 2022: sine by segments";
-const SONG: &str = "Song 2021: exact S-curve";
-const SONOBE: &str = "Sonobe 2011: acceleration table";
-const PATENT: &str = "RU 2704486, 2019: tick packets";
-const ZHANG: &str = "Zhang 2012: fixed-length controller";
-const ALONE: &str = "Stand-alone controller: additional functions";
-const FRAMED: &str = "Framed protocol: checked, acknowledged, repeated";
-const PROFILES: &str = "Additional profiles: exact sine, jerk-limited, points";
-const DRIVERS: &str = "Driver data sheets: timing";
+/// What a preset is for: its group in the page's gallery.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Task {
+    /// Curves, ramps and step times.
+    Motion,
+    /// Commands on the serial line, and their pulses.
+    Packets,
+    /// Pulses against a data sheet.
+    DriverTiming,
+    /// Simulated motors, drivers and supply.
+    Motor,
+    /// Stand-alone controllers.
+    Controller,
+}
+
+impl Task {
+    /// Its title.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Motion => "Motion",
+            Self::Packets => "Packets",
+            Self::DriverTiming => "Driver timing",
+            Self::Motor => "Motor",
+            Self::Controller => "Controller",
+        }
+    }
+}
+
+const SINE: Option<&str> = Some("SWorldJournal 2022: sine by segments");
+const SONG: Option<&str> = Some("Song 2021: exact S-curve");
+const SONOBE: Option<&str> = Some("Sonobe 2011: acceleration table");
+const PATENT: Option<&str> = Some("RU 2704486, 2019: tick packets");
+const ZHANG: Option<&str> = Some("Zhang 2012: fixed-length controller");
 
 macro_rules! presets {
-    ($(#[$meta:meta])* $list:ident: $($document:expr => $id:literal;)*) => {
+    ($(#[$meta:meta])* $list:ident: $($task:ident, $paper:expr => $id:literal, $view:literal;)*) => {
         $(#[$meta])*
         pub const $list: &[Preset] = &[$(Preset {
             id: $id,
-            document: $document,
+            task: Task::$task,
+            paper: $paper,
+            view: $view,
             json: include_str!(concat!("../presets/", $id, ".json")),
         }),*];
     };
@@ -44,62 +74,62 @@ macro_rules! presets {
 presets! {
     /// All presets of the page, in the order of its menu.
     PRESETS:
-    SONG => "song-2021-one-turn";
-    SONG => "song-2021-plateau";
-    SONG => "song-2021-sliced";
-    SONG => "song-2021-ramps";
-    SONOBE => "sonobe-2011-table";
-    SONOBE => "sonobe-2011-segments";
-    ZHANG => "zhang-2012-fixed-length";
-    ZHANG => "zhang-2012-staircase";
-    SINE => "sine-2022-d00054";
-    SINE => "sine-2022-d0006";
-    PROFILES => "exact-sine";
-    PROFILES => "jerk-limited";
-    PROFILES => "points";
-    PATENT => "patent-2019-four-motors";
-    PATENT => "patent-2019-sixteen-motors";
-    PATENT => "patent-2019-staggered";
-    PATENT => "patent-2019-common-dir";
-    PATENT => "patent-2019-addressed";
-    PATENT => "two-controllers-raw";
-    PATENT => "glitches-and-breaks";
-    FRAMED => "framed-link";
-    FRAMED => "raw-noisy-line";
-    FRAMED => "framed-noisy-line";
-    FRAMED => "four-controllers-framed";
-    DRIVERS => "driver-timing-broken";
+    Motion, SONG => "song-2021-one-turn", "tmotion";
+    Motion, SONG => "song-2021-plateau", "tmotion";
+    Motion, SONG => "song-2021-sliced", "tmotion";
+    Motion, SONG => "song-2021-ramps", "tmotion";
+    Motion, SONOBE => "sonobe-2011-table", "tmotion";
+    Motion, SONOBE => "sonobe-2011-segments", "tmotion";
+    Motion, ZHANG => "zhang-2012-fixed-length", "tmotion";
+    Motion, ZHANG => "zhang-2012-staircase", "0-6000000.tmotion";
+    Motion, SINE => "sine-2022-d00054", "tspectrum";
+    Motion, SINE => "sine-2022-d0006", "tspectrum";
+    Motion, None => "exact-sine", "tmotion";
+    Motion, None => "jerk-limited", "tmotion";
+    Motion, None => "points", "tmotion";
+    Packets, PATENT => "patent-2019-four-motors", "0-270000.tpulses";
+    Packets, PATENT => "patent-2019-sixteen-motors", "tmotion";
+    Packets, PATENT => "patent-2019-staggered", "0-270000.tpulses";
+    Packets, PATENT => "patent-2019-common-dir", "600-660.tpulses";
+    Packets, PATENT => "patent-2019-addressed", "tpackets";
+    Packets, PATENT => "two-controllers-raw", "0-200000.tpackets";
+    Packets, PATENT => "glitches-and-breaks", "tpulses";
+    Packets, None => "framed-link", "0-700000.tpackets";
+    Packets, None => "raw-noisy-line", "1500000-2000000.tpackets";
+    Packets, None => "framed-noisy-line", "0-1100000.tpackets";
+    Packets, None => "four-controllers-framed", "0-300000.tpackets";
+    DriverTiming, None => "driver-timing-broken", "2850-3350.ttiming";
 }
 
 presets! {
     /// Presets with a plant.
     PLANT_PRESETS:
-    PATENT => "patent-2019-figure-1";
-    PATENT => "patent-2019-figure-2";
-    PATENT => "patent-2019-overload";
-    SONG => "song-2021-motor";
-    SONG => "song-2021-direct-start";
-    SONG => "song-2021-stall";
-    PROFILES => "resonance-full-steps";
+    Motor, PATENT => "patent-2019-figure-1", "325000-353000.tmotor";
+    Motor, PATENT => "patent-2019-figure-2", "320000-760000.tmotor";
+    Motor, PATENT => "patent-2019-overload", "0-80000.tmotor";
+    Motor, SONG => "song-2021-motor", "tmotor";
+    Motor, SONG => "song-2021-direct-start", "tmotor";
+    Motor, SONG => "song-2021-stall", "tmotor";
+    Motor, None => "resonance-full-steps", "tmotor";
 }
 
 presets! {
     /// Presets of stand-alone controllers.
     CONTROLLER_PRESETS:
-    ZHANG => "zhang-2012-controller";
-    ZHANG => "zhang-2012-program";
-    ZHANG => "zhang-2012-zero-by-jog";
-    ALONE => "controller-homing";
-    ALONE => "controller-limit";
-    ALONE => "controller-emergency-stop";
-    ALONE => "controller-power-cut";
-    ALONE => "controller-power-cut-lost";
+    Controller, ZHANG => "zhang-2012-controller", "tpanel";
+    Controller, ZHANG => "zhang-2012-program", "tpanel";
+    Controller, ZHANG => "zhang-2012-zero-by-jog", "tpanel";
+    Controller, None => "controller-homing", "tpanel";
+    Controller, None => "controller-limit", "tpanel";
+    Controller, None => "controller-emergency-stop", "41187000-41203000.a41196800.tpulses";
+    Controller, None => "controller-power-cut", "tpanel";
+    Controller, None => "controller-power-cut-lost", "tpanel";
 }
 
 presets! {
     /// Presets of stand-alone controllers with a plant.
     CONTROLLER_PLANT_PRESETS:
-    ALONE => "controller-held-and-wrong";
+    Controller, None => "controller-held-and-wrong", "tpanel";
 }
 
 #[cfg(test)]

@@ -63,13 +63,17 @@ fn axe_finds_nothing_in_any_kind_of_experiment() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.open("").await?;
+        page.click("#preset").await?;
+        page.until("document.querySelector('#gallery[open] [data-entry]')").await?;
+        look(&page, "the gallery", &mut wrong).await?;
+        page.click("#gallery [aria-label=Close]").await?;
         for preset in [
             "driver-timing-broken",
             "four-controllers-framed",
             "sonobe-2011-segments",
             "patent-2019-figure-2",
         ] {
-            page.choose("#preset", preset).await?;
+            page.preset(preset).await?;
             page.ready().await?;
             look(&page, preset, &mut wrong).await?;
         }
@@ -82,7 +86,7 @@ fn axe_finds_nothing_in_any_tab_of_the_study() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.open("").await?;
-        page.choose("#preset", "sine-2022-d0006").await?;
+        page.preset("sine-2022-d0006").await?;
         page.ready().await?;
         page.click("#study").await?;
         for tab in ["compare", "measures", "tables", "sine", "torque"] {
@@ -93,7 +97,8 @@ fn axe_finds_nothing_in_any_tab_of_the_study() -> Result<()> {
             .await?;
             look(&page, tab, &mut wrong).await?;
         }
-        page.choose("#preset", "patent-2019-figure-2").await?;
+        page.preset("patent-2019-figure-2").await?;
+        page.click("#study").await?;
         page.click("#study-tab-motor").await?;
         page.until("document.querySelectorAll('#study-motor tbody tr').length > 4").await?;
         look(&page, "motor", &mut wrong).await?;
@@ -107,7 +112,7 @@ fn axe_finds_nothing_on_a_narrow_screen_at_any_tab() -> Result<()> {
         let mut wrong = Vec::new();
         page.screen(390, 844).await?;
         page.open("").await?;
-        page.choose("#preset", "driver-timing-broken").await?;
+        page.preset("driver-timing-broken").await?;
         page.ready().await?;
         let tabs: Vec<String> = page
             .eval("[...document.querySelectorAll('[role=tab]:not([hidden])')].map((tab) => tab.id)")

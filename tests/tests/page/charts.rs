@@ -211,7 +211,7 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
 fn a_harmonic_that_is_pointed_at_lights_up_as_stem_and_row() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
-        page.choose("#preset", "sine-2022-d0006").await?;
+        page.preset("sine-2022-d0006").await?;
         page.until("document.getElementById('thd').textContent.includes('0.26')").await?;
         let note = page.text("#spectrum-note").await?;
         for said in ["no window", "coherent", "harmonics 2 to 1000", "250 mHz"] {

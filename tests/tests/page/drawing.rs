@@ -123,7 +123,7 @@ fn the_page_comes_with_the_headers_and_the_policy_that_its_folder_states() -> Re
 fn nothing_is_asked_of_another_host() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
-        page.choose("#preset", "sonobe-2011-table").await?;
+        page.preset("sonobe-2011-table").await?;
         page.until("document.documentElement.dataset.state === 'ready'").await?;
         page.click("#theme").await?;
         page.click("#share").await?;

@@ -59,7 +59,7 @@ async fn main_job(page: Session) -> Result<Session> {
 
     for preset in PRESETS.iter().chain(PLANT_PRESETS).chain(CONTROLLER_PRESETS) {
         let known = Known::preset(preset)?;
-        stranger.choose("#preset", preset.id).await?;
+        stranger.preset(preset.id).await?;
         stranger.until_digest(&known.digest).await.with_context(|| preset.id)?;
     }
     Ok(stranger)

@@ -115,7 +115,7 @@ fn tables_have_the_numbers_of_the_views_and_a_long_file_can_be_left_off() -> Res
     in_browser(|page| async move {
         page.before_scripts(KEEP).await?;
         page.open("").await?;
-        page.choose("#preset", "driver-timing-broken").await?;
+        page.preset("driver-timing-broken").await?;
         page.until("document.querySelector('#health').textContent.includes('131 timing violations')").await?;
         page.click("#export").await?;
         page.until("document.querySelector('#export-list [data-file]') !== null").await?;

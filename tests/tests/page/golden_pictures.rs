@@ -135,7 +135,7 @@ fn curves_and_pulses_look_as_they_did() -> Result<()> {
             page.screen(width, 900).await?;
             page.system_colours(scheme).await?;
             page.open("").await?;
-            page.choose("#preset", preset.id).await?;
+            page.preset(preset.id).await?;
             page.until_digest(&known.digest).await?;
             // A tick or two in the middle: single pulses, and bits on the line.
             let clock = f64::from(known.scenario.clock_hz);

@@ -189,7 +189,7 @@ fn another_kind_of_move_keeps_what_both_have_and_the_first_kind_comes_back_whole
 fn a_changed_preset_is_called_so_until_it_has_a_name() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
-        page.choose("#preset", "song-2021-one-turn").await?;
+        page.preset("song-2021-one-turn").await?;
         page.ready().await?;
         let title = page.text("#about h2").await?;
         ensure!(
@@ -310,11 +310,12 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.open("").await?;
         page.fill(DISTANCE, "1234").await?;
         page.ready().await?;
-        // The panel's script comes after the panel, which takes nothing before that nobody would hear of.
-        assert!(page.eval::<bool>("!!document.getElementById('experiment-name').closest('[inert]')").await?);
+        // The panel's script comes after the panel: until then nothing can be pressed, but the name can be typed.
+        assert!(page.eval::<bool>("!!document.getElementById('experiment-list').closest('[inert]') && document.getElementById('experiment-save').disabled").await?);
         page.click("#experiments").await?;
+        page.until_equal("document.activeElement.id", &serde_json::json!("experiment-name")).await?;
         page.until("document.getElementById('experiment-save').offsetWidth > 0").await?;
-        page.until("!document.getElementById('experiment-name').closest('[inert]')").await?;
+        page.until("!document.getElementById('experiment-save').disabled").await?;
         page.until("document.getElementById('experiments-export').disabled").await?;
         page.press("#experiment-name", &format!("Rig{ENTER}")).await?;
         page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
@@ -325,7 +326,7 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.open("").await?;
         page.ready().await?;
         // Listed beside the presets, and opened with its name.
-        page.choose("#preset", "own:Rig").await?;
+        page.preset("own:Rig").await?;
         page.until_digest(&Known::of(&with_distance(1234.0))?.digest).await?;
         assert_eq!(page.field("title").await?.value, "Rig");
         page.click("#undo").await?;
@@ -387,7 +388,7 @@ fn what_is_kept_and_broken_stops_nothing() -> Result<()> {
         let old = r#"[{"title":"Old","bus":{"pulses":"staggered","settle_cycles":60}}]"#;
         page.eval::<bool>(&format!("(localStorage.setItem('stepscope.experiments', {old:?}), true)")).await?;
         page.open("").await?;
-        page.choose("#preset", "own:Old").await?;
+        page.preset("own:Old").await?;
         page.until_digest(&Known::of(r#"{"bus":{"pulse_phasing":"staggered","settle_cycles":60}}"#)?.digest)
             .await
     })

@@ -122,7 +122,11 @@ fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
 
         // A preset.
         go(&page, &[], "preset").await?;
-        key(&page, &[], DOWN).await?;
+        key(&page, &[], ENTER).await?;
+        page.until("document.activeElement.id === 'gallery-search'").await?;
+        type_text(&page, "one turn in 0.4 s, cosine").await?;
+        page.until("document.querySelectorAll('#gallery [data-entry]').length === 1").await?;
+        key(&page, &[], ENTER).await?;
         page.until_digest(&Known::preset(&PRESETS[0])?.digest).await.context("the first preset")?;
         still(&page, "preset").await?;
 

@@ -80,6 +80,7 @@ mod screens;
 mod session;
 mod small_screens;
 mod spectrum;
+mod start;
 mod stepping;
 mod study;
 mod time_axis;

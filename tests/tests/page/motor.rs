@@ -44,7 +44,7 @@ fn every_preset_with_a_plant_shows_the_cores_verdict_and_numbers() -> Result<()>
         for preset in PLANT_PRESETS {
             let known = Known::preset(preset)?;
             let report = report(&known);
-            page.choose("#preset", preset.id).await?;
+            page.preset(preset.id).await?;
             page.until_digest(&known.digest).await?;
             let motor = &report.motors[0];
             page.until(&format!("{VERDICT}.includes('Motor 0 {}')", motor.verdict)).await?;
@@ -191,7 +191,7 @@ fn what_is_unfolded_covers_nothing_and_closes_where_a_motor_comes() -> Result<()
                 page.click("#view-motion [data-side='motor']").await?;
             }
             page.until("document.getElementById('motor-choice').open").await?;
-            page.choose("#preset", "patent-2019-figure-2").await?;
+            page.preset("patent-2019-figure-2").await?;
             page.until(&format!("{VERDICT}.includes('follows')")).await?;
             page.until("!document.getElementById('motor-choice').open").await?;
             // Both show what they hold, and can be closed again by a press on what opened them.

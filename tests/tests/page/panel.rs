@@ -285,7 +285,7 @@ fn axe_finds_nothing_in_the_panel() -> Result<()> {
         for (width, height) in [(1366, 768), (390, 844)] {
             page.screen(width, height).await?;
             page.open("").await?;
-            page.choose("#preset", "controller-limit").await?;
+            page.preset("controller-limit").await?;
             page.ready().await?;
             if width < 900 {
                 page.click("#tab-panel").await?;

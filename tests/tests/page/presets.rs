@@ -7,7 +7,7 @@ use stepscope_core::{
     inspect::motion::spectrum::Spectrum,
     scenario::{
         Source,
-        presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset},
+        presets::{CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset, Task},
     },
 };
 
@@ -17,31 +17,35 @@ use crate::{bench::in_browser, native::Known, session::Session};
 fn every_preset_opens_and_its_digest_link_and_distortion_are_the_cores() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
+        page.click("#preset").await?;
+        page.until("document.querySelector('#gallery[open] [data-entry]')").await?;
         let offered: Vec<String> = page
-            .eval("[...document.querySelectorAll('#preset option')].map((o) => o.value).filter(Boolean)")
+            .eval("[...document.querySelectorAll('#gallery [data-entry]')].map((card) => card.dataset.entry)")
             .await?;
-        // Document by document; those with a plant are looked at in `motor`, those with a panel in `panel`.
+        // Task by task; those with a plant are looked at in `motor`, those with a panel in `panel`.
         let panels = CONTROLLER_PRESETS.iter().chain(CONTROLLER_PLANT_PRESETS);
         let all: Vec<&Preset> = PRESETS.iter().chain(PLANT_PRESETS).chain(panels).collect();
-        let mut documents: Vec<&str> = Vec::new();
+        let mut tasks: Vec<Task> = Vec::new();
         for preset in &all {
-            if !documents.contains(&preset.document) {
-                documents.push(preset.document);
+            if !tasks.contains(&preset.task) {
+                tasks.push(preset.task);
             }
         }
         let mut grouped: Vec<&str> = Vec::new();
-        for document in documents {
-            grouped.extend(all.iter().filter(|preset| preset.document == document).map(|preset| preset.id));
+        for task in tasks {
+            grouped.extend(all.iter().filter(|preset| preset.task == task).map(|preset| preset.id));
         }
         // Below them those that were recorded; see `recording`.
         grouped.extend(SAMPLES.iter().map(|sample| sample.id));
         assert_eq!(offered, grouped);
+        page.click("#gallery [aria-label=Close]").await?;
         let mut periodic = 0;
         for preset in PRESETS {
             let known = Known::preset(preset)?;
-            page.choose("#preset", preset.id).await?;
+            page.preset(preset.id).await?;
             page.until_digest(&known.digest).await.with_context(|| preset.id)?;
-            let link = json!(format!("#{}", known.link));
+            let view = if preset.view == "tmotion" { String::new() } else { format!("&v={}", preset.view) };
+            let link = json!(format!("#{}{view}", known.link));
             page.until_equal("location.hash", &link).await.with_context(|| preset.id)?;
             ensure!(!page.visible("#budget").await?, "{} is over the budget", preset.id);
             ensure!(

@@ -67,7 +67,7 @@ fn the_file_of_a_part_is_given_up_once_something_else_is_on_show() -> Result<()>
                     page.click("#undo").await?;
                     page.click("#undo").await?;
                 }
-                "preset" => page.choose("#preset", "exact-sine").await?,
+                "preset" => page.preset("exact-sine").await?,
                 "source" => page.fill("clock_hz", "8000000").await?,
                 "link" => page.follow(&own.link).await?,
                 // Its dialog goes with it.

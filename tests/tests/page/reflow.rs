@@ -153,7 +153,7 @@ async fn at_sizes(page: &Session, what: &str, sizes: &[Value], wrong: &mut Vec<S
                 page.open("").await?;
             }
             if !preset.is_empty() && index == 0 {
-                page.choose("#preset", preset).await?;
+                page.preset(preset).await?;
                 page.ready().await?;
             }
             // What follows the window's size has followed it by the frame after the next.

@@ -200,6 +200,14 @@ impl Session {
         self.find(css).await?.select_by_value(value).await.with_context(|| format!("{css} has no {value}"))
     }
 
+    /// Opens a preset, a sample recording (by `id`) or a saved experiment (`own:` and its title) from the gallery.
+    pub(crate) async fn preset(&self, id: &str) -> Result<()> {
+        self.click("#preset").await?;
+        let card = format!("#gallery[open] [data-entry=\"{id}\"]");
+        self.until(&format!("document.querySelector('{card}')")).await?;
+        self.click(&card).await
+    }
+
     /// Opens the sections around a field and scrolls to it: what an edge of the form cuts through can't be clicked.
     async fn unfold(&self, path: &str) -> Result<()> {
         let script = "for (let at = document.querySelector(arguments[0]); at; at = at.parentElement) \

@@ -31,8 +31,11 @@ const SEEN: &str = "
 
 async fn open(page: &Session, preset: &str) -> Result<()> {
     page.open("").await?;
+    if page.visible("#welcome").await? {
+        page.click("#welcome-never").await?;
+    }
     if !preset.is_empty() {
-        page.choose("#preset", preset).await?;
+        page.preset(preset).await?;
         page.ready().await?;
     }
     page.js::<()>("return new Promise((seen) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(seen))));", vec![]).await
@@ -112,7 +115,7 @@ fn a_view_with_nothing_to_show_gives_its_room_away_until_it_is_unfolded() -> Res
                 .await?;
         }
         // What has something to show has its room again.
-        page.choose("#preset", "song-2021-one-turn").await?;
+        page.preset("song-2021-one-turn").await?;
         page.ready().await?;
         page.until("document.querySelectorAll('#packets tbody tr').length > 3 && document.getElementById('packets').checkVisibility()").await?;
         // The choice is kept on this device.

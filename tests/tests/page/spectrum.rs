@@ -19,7 +19,7 @@ async fn open(page: &Session) -> Result<()> {
     if page.visible("#tab-spectrum").await? {
         page.click("#tab-spectrum").await?;
     }
-    page.choose("#preset", "sine-2022-d0006").await?;
+    page.preset("sine-2022-d0006").await?;
     page.until("document.getElementById('thd').textContent.includes('0.26')").await?;
     page.ready().await
 }

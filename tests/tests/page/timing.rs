@@ -28,7 +28,7 @@ fn violations_are_counted_and_gone_through_one_by_one() -> Result<()> {
 
         page.open("").await?;
         ensure!(!page.visible("#view-timing").await?, "the default motion has no driver");
-        page.choose("#preset", preset.id).await?;
+        page.preset(preset.id).await?;
         page.until_digest(&known.digest).await?;
         assert_eq!(page.text("#health").await?, format!("{total} timing violations"));
         ensure!(page.visible("#view-timing").await? && !page.visible("#view-spectrum").await?);

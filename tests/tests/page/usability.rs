@@ -88,7 +88,7 @@ fn every_field_of_the_form_is_explained() -> Result<()> {
         for id in
             ["driver-timing-broken", "sonobe-2011-segments", "glitches-and-breaks", "two-controllers-raw"]
         {
-            page.choose("#preset", id).await?;
+            page.preset(id).await?;
             page.ready().await?;
             let dumb: Vec<String> = page
                 .eval(
@@ -221,7 +221,7 @@ fn what_went_wrong_on_purpose_is_told_and_mended_in_one_step() -> Result<()> {
             let broken = Known::preset(preset)?;
             let mut scenario = preset.scenario();
             mend(&mut scenario);
-            page.choose("#preset", id).await?;
+            page.preset(id).await?;
             page.until_digest(&broken.digest).await?;
             let said = page.text("#remedy").await?;
             ensure!(said.contains(says), "{id}: {said}");
@@ -240,7 +240,7 @@ fn what_went_wrong_on_purpose_is_told_and_mended_in_one_step() -> Result<()> {
 fn an_axis_is_copied_to_all_others_in_one_step() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
-        page.choose("#preset", "framed-link").await?;
+        page.preset("framed-link").await?;
         page.ready().await?;
         let before = page.form().await?;
         let preset = PRESETS.iter().find(|preset| preset.id == "framed-link").context("it is there")?;

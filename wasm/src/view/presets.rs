@@ -10,7 +10,9 @@ use wasm_bindgen::prelude::*;
 #[derive(Serialize)]
 struct Listed {
     id: &'static str,
-    document: &'static str,
+    task: &'static str,
+    paper: Option<&'static str>,
+    view: &'static str,
     title: String,
     scenario: String,
 }
@@ -20,8 +22,14 @@ struct Listed {
 pub fn presets() -> Result<JsValue, JsError> {
     let listed = |preset: &Preset| {
         let scenario = preset.scenario();
-        let (id, document, title) = (preset.id, preset.document, scenario.title.clone());
-        Listed { id, document, title, scenario: scenario.to_json() }
+        Listed {
+            id: preset.id,
+            task: preset.task.title(),
+            paper: preset.paper,
+            view: preset.view,
+            title: scenario.title.clone(),
+            scenario: scenario.to_json(),
+        }
     };
     let lists = [PRESETS, PLANT_PRESETS, CONTROLLER_PRESETS, CONTROLLER_PLANT_PRESETS];
     object(&lists.into_iter().flatten().map(listed).collect::<Vec<_>>())
