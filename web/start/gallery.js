@@ -47,7 +47,7 @@ export function createGallery(page, dialog) {
   /** @param {Entry} entry */
   function card(entry) {
     const { id, title, text } = entry;
-    const made = element("button", { type: "button", class: "card", "data-entry": id });
+    const made = element("button", { type: "button", class: "card", "data-entry": id, title: text });
     if (THUMBNAILS[id]) made.append(thumbnail(THUMBNAILS[id]));
     made.append(element("b", {}, title), element("span", {}, text));
     made.addEventListener("click", () => {

@@ -1,5 +1,6 @@
 /** Opens presets, sample recordings and saved experiments. */
 import { byId } from "../dom.js";
+import { awaitResult } from "../shell/await_result.js";
 import { openSaved } from "../shell/saved_experiments.js";
 import { parseView } from "../shell/view_part.js";
 import { errorMessage } from "../state/error_message.js";
@@ -7,14 +8,15 @@ import { readJson } from "../state/json.js";
 
 /** @typedef {{engine: import("../engine/engine.js").Engine, problemText: import("../shell/open_file.js").ProblemText, presets: import("../state/types.js").Preset[]} & import("../state/types.js").Page} Page */
 
-/** Makes a view visible: unfolded on a wide screen, and above a folded form on a narrow one. @param {Page} page @param {string | undefined} view */
-export function reveal({ dispatch, now }, view) {
+/** Makes a view visible: unfolded and scrolled to on a wide screen, and above a folded form on a narrow one. @param {Page} page @param {string} view */
+export async function reveal({ dispatch, now }, view) {
   const { largest, folded } = now().panes;
   if (largest !== null || folded.some((name) => name === view))
     dispatch({ type: "pane", panes: { largest: null, folded: folded.filter((name) => name !== view) } });
-  if (!matchMedia("(max-width: 899px)").matches) return;
-  /** @type {HTMLDetailsElement} */ (byId("sheet")).open = false;
-  scrollTo(0, 0);
+  if (matchMedia("(max-width: 899px)").matches) {
+    /** @type {HTMLDetailsElement} */ (byId("sheet")).open = false;
+    scrollTo(0, 0);
+  } else if (await awaitResult({ now })) byId(`view-${view}`).scrollIntoView({ block: "nearest" });
 }
 
 /** Opens a preset in its view, or in another one. @param {Page} page @param {import("../state/types.js").Preset} preset @param {string} [view]  Part `v` of a link. */
@@ -22,7 +24,7 @@ export function openPreset(page, { id, scenario, view: own }, view = own) {
   const part = parseView(view);
   page.dispatch({ type: "replace", scenario: readJson(scenario), origin: `preset:${id}` });
   page.dispatch({ type: "open", view: part });
-  reveal(page, part.view);
+  void reveal(page, part.view ?? "motion");
 }
 
 /** @param {Page} page @param {import("../state/gallery.js").Entry} entry */

@@ -15,7 +15,7 @@ const STARTERS = [
       if (page.now().scenario.source?.motion) {
         page.dispatch({ type: "view", view: "study" });
         page.dispatch({ type: "study", study: "tables" });
-        reveal(page, "study");
+        void reveal(page, "study");
       } else openNamed(page, "song-2021-one-turn", "tstudy.ytables");
       focusField('[data-path^="source.motion.axes[0].moves[0]"]');
     },
@@ -28,7 +28,7 @@ const STARTERS = [
       else {
         page.dispatch({ type: "view", view: "timing" });
         page.dispatch({ type: "side", area: "spectrum", side: "timing" });
-        reveal(page, "timing");
+        void reveal(page, "timing");
       }
       focusField('[data-path="driver_timing"]');
     },
