@@ -37,7 +37,7 @@ export function createLink({ engine, dispatch, now }) {
     written = location.hash;
     entry = to.entry;
     if (known.scenario !== now().scenario) open(known.scenario, known.origin, true);
-    dispatch({ type: "open", view: parseView(known.view) });
+    dispatch({ type: "open", view: { view: "motion", ...parseView(known.view) } });
   });
 
   /** @param {import("../state/types.js").Scenario} scenario @param {import("../state/types.js").Origin} origin @param {boolean} isNavigated */

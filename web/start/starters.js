@@ -17,7 +17,7 @@ const STARTERS = [
         page.dispatch({ type: "study", study: "tables" });
         void reveal(page, "study");
       } else openNamed(page, "song-2021-one-turn", "tstudy.ytables");
-      focusField('[data-path^="source.motion.axes[0].moves[0]"]');
+      focusField('input[data-path^="source.motion.axes[0].moves[0]"]');
     },
   },
   {
@@ -30,7 +30,7 @@ const STARTERS = [
         page.dispatch({ type: "side", area: "spectrum", side: "timing" });
         void reveal(page, "timing");
       }
-      focusField('[data-path="driver_timing"]');
+      focusField('[data-path^="driver_timing"]');
     },
   },
   {

@@ -32,7 +32,7 @@ fn a_new_visitor_has_three_cards_that_lead_to_their_places() -> Result<()> {
     in_browser(|page| async move {
         for (width, height) in [(1366, 768), (390, 844)] {
             for (title, focus, view) in [
-                ("Plan a move", "source.motion.axes[0].moves[0]", "study-tables"),
+                ("Plan a move", "source.motion.axes[0].moves[0].cosine.distance", "study-tables"),
                 ("Check pulses", "driver_timing", "margins"),
             ] {
                 page.screen(width, height).await?;
