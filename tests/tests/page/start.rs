@@ -11,7 +11,7 @@ use crate::{
     session::{ENTER, Session},
 };
 
-const FOCUS: &str = "document.activeElement.id || document.activeElement.dataset.path || ''";
+const FOCUS: &str = "document.activeElement.dataset.path || document.activeElement.id";
 const WELCOME: &str = "document.getElementById('welcome').checkVisibility()";
 const ESCAPE: char = '\u{e00c}';
 
