@@ -194,7 +194,7 @@ async fn answers(page: &Session) -> Result<Vec<Value>> {
     page.before_scripts(OBSERVE).await?;
     for preset in PRESETS.iter().chain(PLANT_PRESETS) {
         page.open("").await?;
-        page.choose("#preset", preset.id).await?;
+        page.preset(preset.id).await?;
         page.ready().await?;
         for key in ["+", "+", "\u{e014}", "\u{e014}", "n", "-", "\u{e011}"] {
             page.press("#pulses", key).await?;
