@@ -31,6 +31,8 @@ const MARGIN: f64 = 2.0;
 const JUMP: f64 = 6.0;
 /// Up to this number of signals, DIR is drawn.
 const MAX_ROWS: usize = 5;
+/// Characters of a line of the file.
+const LINE: usize = 120;
 /// Maximum characters of one.
 const MAX_LENGTH: usize = 640;
 /// Harmonics of a spectrum, and its lowest level in dB.
@@ -52,7 +54,10 @@ fn thumbnails_show_the_runs_of_their_presets() {
     let recordings = SAMPLES.iter().map(|sample| (sample.id, recording(&runs::recorded(sample))));
     for (id, path) in presets.chain(recordings) {
         assert!((10..MAX_LENGTH).contains(&path.len()), "{id}: {} characters: {path}", path.len());
-        writeln!(text, "  \"{id}\": \"{path}\",").expect("a string");
+        // As the page's formatter writes it.
+        let key = if id.contains('-') { format!("\"{id}\"") } else { id.to_owned() };
+        let gap = if key.len() + path.len() + "  : \"\",".len() > LINE { "\n    " } else { " " };
+        writeln!(text, "  {key}:{gap}\"{path}\",").expect("a string");
     }
     text.push_str("};\n");
     if env::var_os("STEPSCOPE_BLESS").is_some() {
