@@ -99,9 +99,7 @@ pub struct Driver<B> {
 
 impl<B: RegisterBus> Driver<B> {
     /// Checks that the peripheral is present.
-    ///
-    /// # Errors
-    /// [`Error::NotFound`], [`Error::UnknownVersion`].
+    /// Errors: [`Error::NotFound`], [`Error::UnknownVersion`].
     pub fn new(mut bus: B) -> Result<Self, Error> {
         let found = bus.read(id::OFFSET);
         if found != id::MAGIC_STEP {
@@ -139,9 +137,7 @@ impl<B: RegisterBus> Driver<B> {
     }
 
     /// Disables the drivers.
-    ///
-    /// # Errors
-    /// [`Error::Busy`] while a tick runs or waits.
+    /// Errors: [`Error::Busy`] while a tick runs or waits.
     pub fn disable(&mut self) -> Result<(), Error> {
         self.command(control::DISABLE.mask())
     }
@@ -152,9 +148,7 @@ impl<B: RegisterBus> Driver<B> {
     }
 
     /// Queues a tick; channels without a command do not move.
-    ///
-    /// # Errors
-    /// [`Error::Full`], [`Error::TooManySteps`], [`Error::Busy`] in the self-test, [`Error::Stopped`].
+    /// Errors: [`Error::Full`], [`Error::TooManySteps`], [`Error::Busy`] in the self-test, [`Error::Stopped`].
     pub fn push(&mut self, tick: &[ChannelCommand]) -> Result<(), Error> {
         let channels = self.channels() as usize;
         if tick.len() > channels {
@@ -172,9 +166,7 @@ impl<B: RegisterBus> Driver<B> {
     }
 
     /// Fills the queue from `ticks`; returns the number of ticks added.
-    ///
-    /// # Errors
-    /// Like [`Self::push`] except [`Error::Full`]. The refused tick is taken from `ticks`.
+    /// Errors: like [`Self::push`] except [`Error::Full`]. The refused tick is taken from `ticks`.
     pub fn fill<const N: usize>(
         &mut self,
         ticks: &mut impl Iterator<Item = [ChannelCommand; N]>,
@@ -189,9 +181,7 @@ impl<B: RegisterBus> Driver<B> {
     }
 
     /// Whether all ticks are done.
-    ///
-    /// # Errors
-    /// [`Error::Stopped`]: remaining ticks never run.
+    /// Errors: [`Error::Stopped`]: remaining ticks never run.
     pub fn is_done(&mut self) -> Result<bool, Error> {
         let read = self.bus.read(status::OFFSET);
         match status::STATE.extract(read) {

@@ -158,9 +158,7 @@ macro_rules! quantity {
             }
 
             /// One step (per s, s^2 or s^3) in this quantity's unit.
-            ///
-            /// # Errors
-            /// [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
+            /// Errors: [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
             pub fn step_size(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
                 let step_size: Option<f64> = match self {
                     $(Self::$variant(_) => {
@@ -172,9 +170,7 @@ macro_rules! quantity {
             }
 
             /// The quantity in steps (per s, s^2 or s^3), correctly rounded from its decimals; with pi, a quotient.
-            ///
-            /// # Errors
-            /// [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
+            /// Errors: [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
             pub fn in_steps(&self, mechanics: &Mechanics) -> Result<f64, NoSuchUnit> {
                 let quotient = self.step_size(mechanics).map(|size| self.value() / size)?;
                 Ok(self.exact_quotient(mechanics).map_or(quotient, |exact| exact.nearest()))
@@ -220,9 +216,7 @@ quantity! {
 
 impl Distance {
     /// The distance in whole steps, halves rounded up: 88.35 mm at 0.1 mm per step are 884.
-    ///
-    /// # Errors
-    /// [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
+    /// Errors: [`NoSuchUnit`] if the mechanics have no millimeters or no degrees.
     pub fn whole_steps(&self, mechanics: &Mechanics) -> Result<i64, NoSuchUnit> {
         let quotient = self.step_size(mechanics).map(|size| self.value() / size)?;
         Ok(self.exact_quotient(mechanics).map_or_else(|| round_half_up(quotient), |exact| exact.rounded()))

@@ -150,9 +150,7 @@ impl<C: From<ValueError>> Validator<C> {
     }
 
     /// Returns `value`, or the problems if there are any.
-    ///
-    /// # Errors
-    /// The listed problems.
+    /// Errors: the listed problems.
     pub fn end<T>(self, value: T) -> Result<T, Vec<Problem<C>>> {
         if self.is_ok() { Ok(value) } else { Err(self.problems) }
     }

@@ -1,6 +1,4 @@
-//! The peripheral's configuration and its rules (DESIGN A4, A7).
-//!
-//! [`Config::new`] validates a [`Bus`] and a [`SerialLine`]; a [`Config`] is always valid.
+//! The peripheral's configuration and its rules (DESIGN A4, A7): [`Config::new`] validates a [`Bus`] and a [`SerialLine`].
 //!
 //! ```
 //! use stepscope_peripheral::config::{Bus, Config, SerialLine};
@@ -182,39 +180,22 @@ impl core::error::Error for ConfigProblem {}
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ConfigError {
-    Range {
-        given: u64,
-        min: u64,
-        max: u64,
-        /// Unit of all three, empty for a plain count.
-        unit: &'static str,
-    },
-    BitTooShort {
-        bit_cycles: u64,
-        baud: u32,
-        clock_hz: u32,
-        max_baud: u32,
-    },
+    /// A number is out of its range. The unit is empty for a plain count.
+    Range { given: u64, min: u64, max: u64, unit: &'static str },
+    /// A bit of the receiver is shorter than 11 cycles.
+    BitTooShort { bit_cycles: u64, baud: u32, clock_hz: u32, max_baud: u32 },
+    /// A slot of `period` cannot hold `pulses` of `needed` = W + max(D + H, 1); `phasing` describes their order.
     PulseTooLong {
         width: u64,
         setup: u64,
         hold: u64,
-        /// L = W + max(D + H, 1).
         needed: u64,
-        /// Pulses per slot, one after another.
         pulses: u64,
-        /// How they are placed in the slot, in words.
         phasing: &'static str,
         period: u64,
     },
     /// Staggered pulses on a common DIR line are closer than one lasts.
-    SettleTooShort {
-        settle: u64,
-        width: u64,
-        setup: u64,
-        hold: u64,
-        needed: u64,
-    },
+    SettleTooShort { settle: u64, width: u64, setup: u64, hold: u64, needed: u64 },
 }
 
 impl fmt::Display for ConfigError {
@@ -292,7 +273,6 @@ impl Config {
         })
     }
 
-    /// The valid bus.
     pub const fn bus(&self) -> &Bus {
         &self.bus
     }
@@ -313,17 +293,14 @@ impl Config {
         Self::new(self.clock_hz, bus, &line)
     }
 
-    /// Clock of the peripheral.
     pub const fn clock_hz(&self) -> u32 {
         self.clock_hz
     }
 
-    /// Channels in use, 1 to 16.
     pub const fn channels(&self) -> u8 {
         self.bus.channels
     }
 
-    /// How bytes form commands.
     pub const fn protocol(&self) -> Protocol {
         self.protocol
     }
@@ -333,7 +310,6 @@ impl Config {
         self.address
     }
 
-    /// Slots per tick, 1 to 127.
     pub const fn slots(&self) -> u8 {
         self.bus.slots
     }
@@ -348,7 +324,6 @@ impl Config {
         Instant(self.bus.self_test_cycles as u64)
     }
 
-    /// Maximum ticks in the queue, 1 to 255.
     pub const fn queue_depth(&self) -> u8 {
         self.bus.queue_depth
     }

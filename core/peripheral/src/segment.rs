@@ -39,17 +39,8 @@ pub const LAST_CYCLE: Instant = Instant(u64::MAX >> FRACTION_BITS);
 /// Steps of one channel, or a pause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Segment {
-    /// Steps at intervals that grow by a constant.
-    Steps {
-        /// Number of steps, at least 1.
-        count: u32,
-        /// Time before the first step, in 1/65536 cycle.
-        interval: u64,
-        /// Added to the interval after each step, in 1/65536 cycle.
-        add: i64,
-        /// DIR level; right is 1.
-        right: bool,
-    },
+    /// At least one step, the first after `interval`, which grows by `add` after each; both in 1/65536 cycle. Right is DIR 1.
+    Steps { count: u32, interval: u64, add: i64, right: bool },
     /// A pause in 1/65536 cycle; 0 is allowed.
     Dwell(u64),
 }
@@ -88,19 +79,12 @@ pub enum Refusal {
     NoChannel,
     /// The start is before cycle 1, or after [`LAST_CYCLE`].
     Start,
+    /// A segment of steps has a count of 0.
     NoSteps,
-    /// An interval is too short for a pulse or exceeds 64 bits.
-    Interval {
-        /// The first such step of the segment, from 0.
-        step: u32,
-        /// In 1/65536 cycle.
-        interval: i128,
-    },
-    /// The last step or the end of a dwell exceeds 64 bits.
-    End {
-        /// The time in 1/65536 cycle.
-        next: i128,
-    },
+    /// An interval in 1/65536 cycle is too short for a pulse or exceeds 64 bits: the first such step of the segment, from 0.
+    Interval { step: u32, interval: i128 },
+    /// The last step or the end of a dwell, in 1/65536 cycle, exceeds 64 bits.
+    End { next: i128 },
 }
 
 /// A refusal and its place.
@@ -203,7 +187,6 @@ impl CheckedSegments {
         Some((step, at(step)))
     }
 
-    /// Times of a step pulse.
     pub const fn pulse(&self) -> PulseTimes {
         self.pulse
     }
@@ -213,7 +196,6 @@ impl CheckedSegments {
         &self.lists
     }
 
-    /// Returns the lists.
     pub fn into_lists(self) -> Vec<SegmentList> {
         self.lists
     }

@@ -45,11 +45,9 @@ pub struct Levels(pub u64);
 impl Levels {
     /// Bit of channel 0's DIR.
     pub const DIR_SHIFT: u32 = 16;
-    /// Mask of EN, high while the windings are powered.
     pub const EN: u64 = 1 << 32;
     pub const RX: u64 = 1 << 33;
     pub const TX: u64 = 1 << 34;
-    /// Mask of DE, high while the controller drives the line.
     pub const DE: u64 = 1 << 35;
     /// Levels at reset: windings powered, line idle.
     pub const RESET: Self = Self(Self::EN | Self::RX | Self::TX);
@@ -92,7 +90,6 @@ pub fn name(bit: u32) -> Option<alloc::string::String> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Record {
-    /// First cycle with these levels.
     pub cycle: Instant,
     pub levels: Levels,
 }
@@ -125,34 +122,18 @@ impl Positions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Event {
-    Byte {
-        /// Cycle in which its start bit was detected.
-        start: Instant,
-        byte: u8,
-    },
-    /// The stop bit of a byte was low.
-    FramingError {
-        /// Cycle in which its start bit was detected.
-        start: Instant,
-        /// Bytes are dropped up to the next gap, as on a raw line.
-        is_dropping: bool,
-    },
-    /// A gap in the bytes of a raw line.
-    Gap {
-        /// It cut a packet short; else it ended the dropping of bytes.
-        cuts_packet: bool,
-    },
+    /// A byte whose start bit was detected in cycle `start`.
+    Byte { start: Instant, byte: u8 },
+    /// The stop bit of a byte was low. On a raw line bytes are dropped up to the next gap.
+    FramingError { start: Instant, is_dropping: bool },
+    /// A gap in the bytes of a raw line cut a packet short; else it ended the dropping of bytes.
+    Gap { cuts_packet: bool },
     /// The byte completed a raw packet.
     Packet(PacketOutcome),
     /// The byte completed a frame, or exceeded its maximum length.
     Frame(FrameOutcome),
-    Reply {
-        start: Instant,
-        /// The end of its last stop bit, where DE falls.
-        end: Instant,
-        reply: Reply,
-        positions: Option<Positions>,
-    },
+    /// A reply from its first start bit to the end of its last stop bit, where DE falls.
+    Reply { start: Instant, end: Instant, reply: Reply, positions: Option<Positions> },
     /// This controller and another node drive the line at the same time.
     Collision,
     /// A tick with steps ended and none followed (framed protocol only).
@@ -161,26 +142,15 @@ pub enum Event {
     Pushed,
     /// Firmware or an overload stopped the controller and cleared the queue.
     Stopped,
-    TickStart {
-        commands: [u8; MAX_CHANNELS],
-    },
+    /// The tick at the head of the queue started.
+    TickStart { commands: [u8; MAX_CHANNELS] },
+    /// The tick ended.
     TickEnd,
-    /// The panel of a stand-alone controller changed.
-    Panel {
-        controller: u8,
-        /// Lamps, digits and state, as bits.
-        word: u64,
-        /// Position of the axis in steps.
-        position: i64,
-        /// Displayed value in units of its last digit.
-        display: i64,
-    },
+    /// The panel of a stand-alone controller changed: lamps, digits and state as bits, the position of the axis in steps, and
+    /// the displayed value in units of its last digit.
+    Panel { controller: u8, word: u64, position: i64, display: i64 },
     /// The raw level of a stand-alone controller's input changed.
-    Input {
-        controller: u8,
-        input: u8,
-        level: bool,
-    },
+    Input { controller: u8, input: u8, level: bool },
 }
 
 /// What became of a raw packet; all but `Queued` drop it.

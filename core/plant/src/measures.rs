@@ -128,10 +128,8 @@ pub struct Measures {
     collapsed: Option<u64>,
     /// Sum of the current sensor's readings before the first step.
     idle_readings_sum: f64,
-    /// Number of these readings.
     idle_readings: u64,
     has_stepped: bool,
-    /// Steps per motor.
     steps: Vec<u64>,
     /// The sensor's readings from step [`FIRST_MEASURED_STEP`] of the first motor on.
     sensor: Statistics,

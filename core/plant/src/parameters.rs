@@ -1,7 +1,5 @@
-//! The parameters of a plant: motors with loads and drivers, supply, sensors (PLANT F9).
-//!
-//! Units are in the names; torques and inertias are seen from the rotor's shaft. [`limits`](crate::limits) has the range
-//! of each number.
+//! The parameters of a plant: motors with loads and drivers, supply, sensors (PLANT F9). [`limits`](crate::limits) has their
+//! ranges. Torques and inertias are seen from the rotor's shaft.
 //!
 //! ```
 //! use stepscope_plant::{Plant, parameters::{DriverModel, MotorModel, CurrentControl, Setup}};
@@ -60,7 +58,6 @@ parameters! { (Clone, Debug, PartialEq)
         pub blank_us: f64 = 1.0,
         /// Steps of the digital-to-analog converter from 0 to the peak current; `None` for an ideal one.
         pub dac_levels: Option<u16> = None,
-        /// Resistance of the bridge in series with a phase.
         pub bridge_ohm: f64 = 0.0,
         /// Forward voltage of one diode of the bridge.
         pub diode_v: f64 = 0.7,

@@ -15,9 +15,7 @@ use crate::{
 use alloc::vec::Vec;
 use stepscope_peripheral::signal::{Levels, Record};
 
-/// Drivers, motors, supply and sensors on the bus of one controller.
-///
-/// [`Plant::record`] takes the edges of the bus; [`Plant::advance`] declares that none comes before a cycle. How a run
+/// Drivers, motors, supply and sensors on the bus of one controller. [`Plant::record`] takes the edges of the bus; [`Plant::advance`] declares that none comes before a cycle. How a run
 /// is divided into calls has no effect on the result.
 #[derive(Clone, Debug)]
 pub struct Plant {
@@ -237,7 +235,6 @@ impl Plant {
         }
     }
 
-    /// Runs to the next grid point.
     fn grid_step(&mut self, observer: &mut dyn Observer) {
         let (powered, supply_v) = (self.levels.has(Levels::EN), self.supply.voltage);
         let mut energy = 0.0;
@@ -307,17 +304,14 @@ impl Plant {
         self.point
     }
 
-    /// Cycles per grid step.
     pub const fn step_cycles(&self) -> u64 {
         self.step_cycles
     }
 
-    /// Clock of the bus.
     pub const fn clock_hz(&self) -> f64 {
         self.clock_hz
     }
 
-    /// Number of motors.
     pub fn motors(&self) -> usize {
         self.motors.len()
     }
@@ -337,7 +331,6 @@ impl Plant {
         self.lost.get(channel).map_or(0, |lost| lost.full_steps())
     }
 
-    /// Whether EN is high.
     pub const fn is_powered(&self) -> bool {
         self.levels.has(Levels::EN)
     }
@@ -372,7 +365,6 @@ impl Plant {
         self.accelerometers.get(channel).map(|accelerometer| &accelerometer.chain)
     }
 
-    /// What happened at the latest point.
     pub const fn events(&self) -> PointEvents {
         self.events
     }

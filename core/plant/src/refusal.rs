@@ -10,24 +10,12 @@ use stepscope_peripheral::signal::MAX_CHANNELS;
 /// Why a [`Setup`] is invalid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refusal {
-    Range {
-        field: &'static str,
-        given: f64,
-        min: f64,
-        max: f64,
-    },
+    /// A number is out of its range.
+    Range { field: &'static str, given: f64, min: f64, max: f64 },
     /// A criterion of [`stability`](crate::stability) is above 0.25: the grid is too coarse for this motor.
-    Unstable {
-        criterion: Criterion,
-        value: f64,
-        step_cycles: u32,
-    },
-    /// The source cannot supply the motors at rest.
-    TooWeak {
-        source_ohm: f64,
-        /// Power of the windings at rest in W.
-        power_w: f64,
-    },
+    Unstable { criterion: Criterion, value: f64, step_cycles: u32 },
+    /// The source cannot supply the power that the windings need at rest, in W.
+    TooWeak { source_ohm: f64, power_w: f64 },
 }
 
 /// A refusal and its place.

@@ -23,7 +23,7 @@ pub(crate) fn square_root(x: f64) -> f64 {
     let half_exponent = (exponent - odd - 56) / 2;
     let root = integer_root(m);
     let sticky = u64::from(u128::from(root) * u128::from(root) != m);
-    // Between 2^54 and 2^55; the conversion rounds to 53 bits, ties to even.
+    // The root has 55 bits, with the sticky bit 56; the conversion rounds them to 53, ties to even.
     let rounded = ((root << 1) | sticky) as f64;
     rounded * power_of_two(half_exponent - 1)
 }

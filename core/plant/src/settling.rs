@@ -68,8 +68,7 @@ impl StepResponse {
     }
 }
 
-/// The mean of samples; `None` without samples. Summing differences from the first gives equal samples exactly their value, so that
-/// a constant current has no peak.
+/// The mean of samples, if there are any. Differences from the first are summed, so that a constant current has no peak.
 pub fn mean<'a>(mut samples: impl Iterator<Item = &'a Sample>) -> Option<f64> {
     let first = samples.next()?.current;
     let (sum, count) = samples.fold((0.0, 1_u32), |(sum, count), s| (sum + (s.current - first), count + 1));

@@ -47,7 +47,6 @@ pub enum Criterion {
 }
 
 impl Criterion {
-    /// Its formula.
     pub const fn formula(self) -> &'static str {
         match self {
             Self::Electrical => "R*h/L",

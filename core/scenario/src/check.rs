@@ -1,6 +1,4 @@
 //! Checks rules between fields (DESIGN A4, A7, A9); `schema::ranges` checks single fields.
-//!
-//! Motions are checked when they are planned (`motion`).
 
 use crate::{
     Cause, Controller, Hex, Host, LineScript, Noise, Packets, Problem, Scenario, Source, VERSION, Validator,
@@ -53,9 +51,7 @@ impl CheckedScenario {
 
 impl Scenario {
     /// Checks everything but motions.
-    ///
-    /// # Errors
-    /// Every problem, each with its path.
+    /// Errors: every problem, each with its path.
     pub fn check(&self) -> Result<CheckedScenario, Vec<Problem>> {
         let mut validator = Validator::default();
         self.check_version(&mut validator);

@@ -30,41 +30,24 @@ extern crate alloc;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-mod limits;
-
-mod problem;
-
-mod compact;
-
-mod json;
-
-mod reader;
-
-mod hex;
-
-mod table;
-
-pub mod schema;
-
-mod plant;
-
-mod points;
-
-mod segments;
-
-mod standalone;
-
 mod check;
-
-mod upgrade;
-
-mod read;
-
-mod recorded;
-
+mod compact;
+mod hex;
+mod json;
+mod limits;
 pub mod link;
-
+mod plant;
+mod points;
 pub mod presets;
+mod problem;
+mod read;
+mod reader;
+mod recorded;
+pub mod schema;
+mod segments;
+mod standalone;
+mod table;
+mod upgrade;
 
 pub use check::CheckedScenario;
 pub use compact::{Compact, Kinds};

@@ -39,22 +39,16 @@ const TRAILING: &[char] = &['.', ',', ';', ':', '!', '?', ')', ']', '}', '>', '"
 #[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum LinkError {
     /// Longer than any link.
-    TooLong {
-        given: usize,
-        most: usize,
-    },
+    TooLong { given: usize, most: usize },
     /// It has no `c=`.
     NoScenario,
-    Newer {
-        given: u64,
-        newest: u32,
-    },
+    /// The format is newer than this reader.
+    Newer { given: u64, newest: u32 },
     /// Wrong CRC: truncated or changed.
     Damaged,
     /// The payload does not fit its codec, or inflates to too much.
-    Payload {
-        most: usize,
-    },
+    Payload { most: usize },
+    /// The scenario has problems.
     Scenario(Vec<Problem>),
 }
 
@@ -96,17 +90,13 @@ impl fmt::Display for LinkError {
 impl core::error::Error for LinkError {}
 
 /// Encodes a scenario as a link, without the `#`.
-///
-/// # Errors
-/// [`LinkError::TooLong`] if the scenario's JSON or the link is longer than [`decode`] reads.
+/// Errors: [`LinkError::TooLong`] if the scenario's JSON or the link is longer than [`decode`] reads.
 pub fn encode(scenario: &Scenario) -> Result<String, LinkError> {
     pack(&scenario.to_compact_json())
 }
 
 /// Encodes a scenario's compact JSON ([`Scenario::to_compact_json`]) as a link.
-///
-/// # Errors
-/// As [`encode`].
+/// Errors: as [`encode`].
 pub fn pack(json: &str) -> Result<String, LinkError> {
     if json.len() > MAX_JSON_BYTES {
         return Err(LinkError::TooLong { given: json.len(), most: MAX_JSON_BYTES });
@@ -131,9 +121,7 @@ pub fn with_part(link: String, name: &str, text: &str) -> String {
 }
 
 /// Decodes a link's fragment, with or without `#`; ignores other parts (`&v=`, `&d=`).
-///
-/// # Errors
-/// The first that [`LinkError`] lists.
+/// Errors: the first that [`LinkError`] lists.
 pub fn decode(fragment: &str) -> Result<Scenario, LinkError> {
     let Packed { json, version } = unpack(fragment)?;
     Scenario::from_json_of(&json, version).map_err(LinkError::Scenario)
@@ -149,9 +137,7 @@ pub struct Packed {
 }
 
 /// Decodes the JSON in a link's fragment.
-///
-/// # Errors
-/// As [`decode`], except problems of the scenario.
+/// Errors: as [`decode`], except problems of the scenario.
 pub fn unpack(fragment: &str) -> Result<Packed, LinkError> {
     if fragment.len() > MAX_FRAGMENT_BYTES {
         return Err(LinkError::TooLong { given: fragment.len(), most: MAX_FRAGMENT_BYTES });

@@ -33,77 +33,42 @@ pub fn of_config(problems: Vec<ConfigProblem>) -> Vec<Problem> {
 #[non_exhaustive]
 #[allow(missing_docs, reason = "fields are named as in the message")]
 pub enum Cause {
+    /// A value of any kind is wrong.
     Value(ValueError),
+    /// A motion cannot be planned.
     Motion(motion::Cause),
+    /// The bus or the line breaks a rule.
     Config(ConfigError),
-    Syntax {
-        line: usize,
-        column: usize,
-        detail: String,
-    },
+    /// The text is not JSON.
+    Syntax { line: usize, column: usize, detail: String },
     /// A wrong type or name.
-    Type {
-        detail: String,
-    },
-    NewerVersion {
-        given: u64,
-        newest: u32,
-    },
+    Type { detail: String },
+    /// The version is newer than this reader.
+    NewerVersion { given: u64, newest: u32 },
     /// A send overlaps the one before (A9).
-    Overlap {
-        start: u64,
-        free_from: u64,
-    },
+    Overlap { start: u64, free_from: u64 },
     /// The line cannot carry one packet per tick (A9).
-    LineTooSlow {
-        packet_cycles: u64,
-        tick_cycles: u64,
-        baud: u32,
-        needed_baud: u64,
-        max_baud: u64,
-    },
+    LineTooSlow { packet_cycles: u64, tick_cycles: u64, baud: u32, needed_baud: u64, max_baud: u64 },
     /// More axes, lists or controllers than channels.
-    Channels {
-        given: usize,
-        of: &'static str,
-        channels: u8,
-        path: String,
-    },
+    Channels { given: usize, of: &'static str, channels: u8, path: String },
     /// A packet of the wrong length (A5).
-    PacketLength {
-        given: usize,
-        channels: u8,
-        is_addressed: bool,
-        path: String,
-    },
-    SameAddress {
-        address: u8,
-    },
+    PacketLength { given: usize, channels: u8, is_addressed: bool, path: String },
+    /// Two controllers have one address.
+    SameAddress { address: u8 },
     /// Different packet lengths on a raw line, where a controller skips packets by its own length (A5).
-    OtherPackets {
-        channels: u8,
-        first_channels: u8,
-    },
+    OtherPackets { channels: u8, first_channels: u8 },
     /// Different tick lengths of controllers with common ticks (A9).
-    OtherTick {
-        tick_cycles: u64,
-        first_cycles: u64,
-    },
+    OtherTick { tick_cycles: u64, first_cycles: u64 },
+    /// A stand-alone controller breaks a rule.
     StandAlone(stepscope_controller::Refusal),
     /// An endless program (CONTROLLER.md G5).
     TooManyGroups(stepscope_controller::TooManyGroups),
     /// A plant that cannot be simulated (F3, F5).
     Plant(stepscope_plant::Refused),
     /// Different supplies of the motors of one controller (F9).
-    OtherSupply {
-        supply_v: f64,
-        first_v: f64,
-    },
+    OtherSupply { supply_v: f64, first_v: f64 },
     /// A boot that is too short for its self-test (F7).
-    SelfTest {
-        given: u64,
-        needed: u64,
-    },
+    SelfTest { given: u64, needed: u64 },
 }
 
 impl From<ValueError> for Cause {

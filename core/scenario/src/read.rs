@@ -15,17 +15,13 @@ const ANY_VERSION: u32 = 1;
 
 impl Scenario {
     /// Reads a scenario of any version up to [`VERSION`].
-    ///
-    /// # Errors
-    /// Every unknown or duplicate field and every wrong type. [`Scenario::check`] checks ranges.
+    /// Errors: every unknown or duplicate field and every wrong type. [`Scenario::check`] checks ranges.
     pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
         without_problems(read(text, None))
     }
 
     /// Reads a scenario whose version is known from elsewhere, such as a link.
-    ///
-    /// # Errors
-    /// As [`Self::from_json`].
+    /// Errors: as [`Self::from_json`].
     pub fn from_json_of(text: &str, version: u64) -> Result<Self, Vec<Problem>> {
         without_problems(read(text, Some(version)))
     }
@@ -67,9 +63,7 @@ fn without_problems((scenario, problems): (Scenario, Vec<Problem>)) -> Result<Sc
 }
 
 /// Reads a part of a scenario, such as an axis or a move. A part has no version, so names of all versions are accepted.
-///
-/// # Errors
-/// Every field of the wrong type or name, with its path in the part.
+/// Errors: every field of the wrong type or name, with its path in the part.
 pub fn part_from_json<T: ReadJson>(text: &str) -> Result<T, Vec<Problem>> {
     let mut part = T::blank();
     let problems = read_into(&mut part, parse(text)?, ANY_VERSION);

@@ -10,9 +10,7 @@ use stepscope_peripheral::wire::frame::{ACK, Deframed, Deframer};
 
 impl LineScript {
     /// Reads the packets of a table; times in s become cycles of `clock_hz`.
-    ///
-    /// # Errors
-    /// [`BadTable`] with the first invalid line. Overlaps are checked later.
+    /// Errors: [`BadTable`] with the first invalid line. Overlaps are checked later.
     pub fn recorded(table: &str, clock_hz: u32) -> Result<Self, BadTable> {
         let mut rows = Rows::new(table, b',')?;
         let (_, head) = rows.next().unwrap_or_default();

@@ -15,9 +15,7 @@ use stepscope_peripheral::units::Instant;
 
 /// Runs from power-up until `sleep` breaks, which on a chip is never. `sleep` waits for the given tick or an input change,
 /// and may return early; on a chip it also refreshes the display from [`Runner::face`].
-///
-/// # Errors
-/// See [`Runner::power_up`].
+/// Errors: see [`Runner::power_up`].
 pub fn run<C: Chip>(
     chip: &mut C,
     checked: &CheckedSetup,

@@ -70,9 +70,7 @@ pub struct TimeError {
 impl Sliced {
     /// `steps` (left negative, not 0, at most 1e9) in `duration_s` > 0 with ramps of `ramp_s`, from 0 to half of it, in
     /// slices of `slice_s` > 0, of which the last may be shorter.
-    ///
-    /// # Errors
-    /// [`NotSliced`] if there would be more than `max_slices`, or if they cannot contain the steps.
+    /// Errors: [`NotSliced`] if there would be more than `max_slices`, or if they cannot contain the steps.
     pub fn new(
         steps: i64,
         duration_s: f64,

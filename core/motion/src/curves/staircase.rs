@@ -34,9 +34,7 @@ pub struct Staircase {
 
 impl Staircase {
     /// `steps` (left negative, not 0, at most 1e9) to `top_rate` >= 1 whole steps/s.
-    ///
-    /// # Errors
-    /// The number of rows needed, if it exceeds `max_rows`.
+    /// Errors: the number of rows needed, if it exceeds `max_rows`.
     pub fn new(
         steps: i64,
         table: StaircaseTable,

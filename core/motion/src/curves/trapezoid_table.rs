@@ -44,9 +44,7 @@ pub enum NoTable {
 
 impl TrapezoidTable {
     /// `steps` (left negative, not 0, at most 1e9) by the table.
-    ///
-    /// # Errors
-    /// [`NoTable`] if the move needs more than `max_rows` rows or a rate above the timer's.
+    /// Errors: [`NoTable`] if the move needs more than `max_rows` rows or a rate above the timer's.
     pub fn new(steps: i64, table: AccelerationTable, max_rows: u64) -> Result<Self, NoTable> {
         let ramp = table.top().min(steps.unsigned_abs().saturating_sub(1) / 2);
         if ramp >= max_rows {

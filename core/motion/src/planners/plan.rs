@@ -16,9 +16,7 @@ const MAX_DURATION_S: f64 = 1e6;
 
 /// Plans several lists of axes with their paths, one list per controller. All of them together share the limits of tables
 /// and sines of [`plan_axis`].
-///
-/// # Errors
-/// Every problem of every axis, each with its path.
+/// Errors: every problem of every axis, each with its path.
 pub fn plan_lists<'a>(
     lists: impl IntoIterator<Item = (String, &'a [Axis])>,
 ) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
@@ -38,9 +36,7 @@ pub fn plan_lists<'a>(
 }
 
 /// Plans a single move with the default mechanics; `path` is its location in the scenario.
-///
-/// # Errors
-/// Every problem of the move, each with its path.
+/// Errors: every problem of the move, each with its path.
 pub fn plan_move(motion: &Move, path: &str) -> Result<AxisPlan, Vec<Problem>> {
     let mechanics = Mechanics::default();
     let mut quantities = Quantities::new(&mechanics, path);
@@ -53,9 +49,7 @@ pub fn plan_move(motion: &Move, path: &str) -> Result<AxisPlan, Vec<Problem>> {
 ///
 /// Distances are rounded half up to whole steps. An axis has at most 64 moves, 1e6 s, 1e6 rows of acceleration tables, and
 /// 65536 segments of sine quarters.
-///
-/// # Errors
-/// Every problem of the axis, each with its path.
+/// Errors: every problem of the axis, each with its path.
 pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
     plan_within(axis, path, &mut Budget::default())
 }

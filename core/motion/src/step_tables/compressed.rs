@@ -85,9 +85,7 @@ pub struct Compressed {
 
 /// Compresses the steps of one axis, whose cycles count from the start of the motion, into the fewest entries of `format`.
 /// If the windows are too wide for that search, it works like [`compressed_quickly`].
-///
-/// # Errors
-/// A tolerance that is too large; a step too soon for `pulse`, or too late for 48.16 fixed point; too many entries.
+/// Errors: a tolerance that is too large; a step too soon for `pulse`, or too late for 48.16 fixed point; too many entries.
 pub fn compressed(
     steps: impl IntoIterator<Item = ScheduledStep>,
     tolerance: Tolerance,
@@ -101,9 +99,7 @@ pub fn compressed(
 }
 
 /// Compresses into few entries, each the longest that ends near the middle of a window, in a fraction of the time.
-///
-/// # Errors
-/// As [`compressed`].
+/// Errors: as [`compressed`].
 pub fn compressed_quickly(
     steps: impl IntoIterator<Item = ScheduledStep>,
     tolerance: Tolerance,

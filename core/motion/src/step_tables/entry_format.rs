@@ -94,9 +94,7 @@ impl EntryFormat {
 
     /// The list's segments as entries of this format. A segment that is too large for an entry becomes several entries: a wait
     /// before a long interval, one entry per step for a large add, or parts of a large count.
-    ///
-    /// # Errors
-    /// A time that is not a multiple of this format's unit.
+    /// Errors: a time that is not a multiple of this format's unit.
     pub fn pack(self, list: &SegmentList) -> Result<Vec<Entry>, Cause> {
         let mut packer = Packer { format: self, entries: Vec::new(), right: false };
         for segment in &list.segments {

@@ -68,9 +68,7 @@ impl Stored {
 }
 
 /// Stores the step times of `plan` in a form.
-///
-/// # Errors
-/// As [`compressed`]; more than 4 000 000 steps for the exact form, or [`MAX_TABLE_STEPS`] for others; for the paper's table,
+/// Errors: as [`compressed`]; more than 4 000 000 steps for the exact form, or [`MAX_TABLE_STEPS`] for others; for the paper's table,
 /// a move without one, or a rate too high for `pulse`. The number of steps is checked first.
 pub fn stored(
     plan: &AxisPlan,
@@ -99,9 +97,7 @@ pub fn stored(
 /// // The direction to the right, and all steps.
 /// assert_eq!((table.entries.len(), table.error.max_cycles), (2, 0));
 /// ```
-///
-/// # Errors
-/// As [`stored`]; [`Form::Document`], because a list of steps has no paper.
+/// Errors: as [`stored`]; [`Form::Document`], because a list of steps has no paper.
 pub fn stored_steps(
     steps: &[ScheduledStep],
     form: Form,

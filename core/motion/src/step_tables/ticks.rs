@@ -50,9 +50,7 @@ impl Ticks {
 
 /// Divides the plans, one per channel, into ticks of `tick_cycles` with up to `slots` steps: enough to end every axis, at
 /// least one. A byte without steps repeats the previous direction, initially left.
-///
-/// # Errors
-/// Too many plans or ticks; or the first tick of each axis that needs more steps than it has slots.
+/// Errors: too many plans or ticks; or the first tick of each axis that needs more steps than it has slots.
 pub fn ticks(
     plans: &[AxisPlan],
     at: AxesPath<'_>,

@@ -11,7 +11,7 @@ const KNOWN: u16 = {
     bits
 };
 
-/// Faults so far; RESYNC or firmware clears them.
+/// Faults so far; RESYNC or firmware clears them. The map of [`faults`] describes each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faults(u16);
 
@@ -22,17 +22,12 @@ impl Faults {
     pub const CRC: Self = Self(faults::CRC.mask() as u16);
     /// A frame had more than 600 decoded bytes.
     pub const OVERLONG: Self = Self(faults::OVERLONG.mask() as u16);
-    /// A packet or frame was refused because the queue was full.
     pub const QUEUE_OVERFLOW: Self = Self(faults::QUEUE_OVERFLOW.mask() as u16);
-    /// A byte requested more steps than a tick has slots.
     pub const TOO_MANY_STEPS: Self = Self(faults::TOO_MANY_STEPS.mask() as u16);
     /// TICKS had neither the expected sequence number nor, as a repeat, the one before it.
     pub const BAD_SEQ: Self = Self(faults::BAD_SEQ.mask() as u16);
-    /// A tick with steps ended and none followed (framed protocol only).
     pub const UNDERRUN: Self = Self(faults::UNDERRUN.mask() as u16);
-    /// The supply current was too high for too long.
     pub const OVERLOAD: Self = Self(faults::OVERLOAD.mask() as u16);
-    /// The self-test found no settling time on some channel.
     pub const SELF_TEST: Self = Self(faults::SELF_TEST.mask() as u16);
 
     pub const ALL: Self = Self::from_bits(u16::MAX);

@@ -56,7 +56,6 @@ use latches::Latches;
 /// The peripheral, driven by frames, raw packets or registers.
 #[derive(Clone, Debug)]
 pub struct Device {
-    /// The next cycle to run.
     now: Instant,
     last_active: Instant,
     line: bool,
@@ -109,7 +108,6 @@ impl Device {
         self.executor.sequencer.ticks_done()
     }
 
-    /// Faults so far; RESYNC or firmware clears them.
     pub const fn faults(&self) -> Faults {
         self.executor.faults()
     }

@@ -6,10 +6,8 @@ use crate::signal::{Sink, Unpaused};
 use crate::units::{Cycles, Instant};
 use stepscope_registers::RegisterBus;
 
-/// The peripheral on the bus of a processor, with an idle serial line.
-///
-/// Time passes with the accesses: each takes some cycles and has its effect in the last of them. The trace goes to
-/// `sink`.
+/// The peripheral on the bus of a processor, with an idle serial line. Time passes with the accesses: each takes some cycles
+/// and has its effect in the last of them.
 ///
 /// ```
 /// use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::ModelBus, signal::Record, units::Cycles};
@@ -34,7 +32,6 @@ impl<S: Sink> ModelBus<S> {
         Self { device: Device::new(config), access: access.max(Cycles(1)), sink }
     }
 
-    /// The peripheral.
     pub const fn device(&self) -> &Device {
         &self.device
     }

@@ -157,7 +157,7 @@ impl Frame<'_> {
     }
 }
 
-/// Encodes a frame with CRC, COBS and delimiter.
+/// Encodes a frame ([`encode_frame`]).
 pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
     let mut content = alloc::vec![address, kind];
     content.extend_from_slice(body);
@@ -195,7 +195,6 @@ impl<'a> Ticks<'a> {
         self.commands.len() / self.channels
     }
 
-    /// One byte per channel, tick after tick.
     /// The commands of all ticks, one byte per channel and tick.
     pub const fn commands(&self) -> &'a [u8] {
         self.commands

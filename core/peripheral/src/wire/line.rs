@@ -76,7 +76,6 @@ impl Line {
         line
     }
 
-    /// The host's sends.
     pub fn schedule(&self) -> &Schedule {
         self.sender.schedule()
     }

@@ -1,4 +1,4 @@
-//! The host's sends: bytes at cycles (DESIGN A9). Packet j of a paced schedule starts at boot + 1 + j*M*Ts, so ticks follow
+//! The host's sends: bytes at cycles (DESIGN A9). Packet j of a paced schedule starts j ticks after the first, so ticks follow
 //! each other without a pause.
 //!
 //! ```
@@ -66,12 +66,10 @@ impl Schedule {
         }
     }
 
-    /// Number of sends.
     pub fn len(&self) -> usize {
         self.sends.len()
     }
 
-    /// Whether there are no sends.
     pub fn is_empty(&self) -> bool {
         self.sends.is_empty()
     }
@@ -104,7 +102,6 @@ impl Schedule {
         self.get(after.checked_sub(1)?)
     }
 
-    /// The sends in order.
     pub fn iter(&self) -> impl Iterator<Item = Sent<'_>> {
         (0..self.len()).filter_map(|index| self.get(index))
     }

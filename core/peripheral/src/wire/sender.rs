@@ -65,7 +65,6 @@ impl Sender {
         sender
     }
 
-    /// All sends.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }

@@ -34,13 +34,10 @@ pub enum RxEvent {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
+    /// Waits for a start bit.
     Armed,
     /// Within a byte: the next bit to sample (0 start, 1..=8 data, 9 stop), when, and the data bits so far.
-    Sampling {
-        bit: u32,
-        at: Instant,
-        byte: u8,
-    },
+    Sampling { bit: u32, at: Instant, byte: u8 },
     /// After a framing error: waits for the line to be high.
     AwaitingHigh,
 }

@@ -78,21 +78,15 @@ fields! {
 
 words! {
     Distribution {
-        /// the first slots of the tick (RU 2704486)
-        Burst = "burst" => label("burst at the start");
-        /// evenly over the tick
-        Spread = "spread" => label("spread evenly");
+        Burst = "burst", "burst at the start": "the first slots of the tick (RU 2704486)";
+        Spread = "spread", "spread evenly": "evenly over the tick";
     }
     DirLine {
-        /// one per channel, changed at the start of a tick
-        PerChannel = "per_channel" => label("one per channel");
-        /// one for all, changed in each slot with a step
-        Common = "common" => label("one for all");
+        PerChannel = "per_channel", "one per channel": "one per channel, changed at the start of a tick";
+        Common = "common", "one for all": "one for all, changed in each slot with a step";
     }
     PulsePhasing {
-        /// all at once
-        Simultaneous = "simultaneous" => label("all at once");
-        /// one channel after another, so that current peaks do not coincide
-        Staggered = "staggered" => label("staggered");
+        Simultaneous = "simultaneous", "all at once": "all at once";
+        Staggered = "staggered", "staggered": "one channel after another, so that current peaks do not coincide";
     }
 }

@@ -51,10 +51,8 @@ settings! {
 
 words! {
     Protocol {
-        /// bytes and pauses (RU 2704486), without checksum and reply
-        Raw = "raw" => label("raw");
-        /// each frame has a CRC and a sequence number, and is repeated until it is acknowledged
-        Framed = "framed" => label("framed");
+        Raw = "raw", "raw": "bytes and pauses (RU 2704486), without checksum and reply";
+        Framed = "framed", "framed": "each frame has a CRC and a sequence number, and is repeated until it is acknowledged";
     }
 }
 

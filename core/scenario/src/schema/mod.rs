@@ -7,12 +7,8 @@
 //!     .term("Slot", "A tick is divided into slots. …").from(PATENT),   help card and its source
 //! ```
 //!
-//! | follows | where |
-//! | --- | --- |
-//! | reading and writing JSON ([`ReadJson`](crate::ReadJson), [`Compact`](crate::Compact)) | `rows`, the macros that declare rows |
-//! | the range check of single fields | `ranges` |
-//! | docs/scenario.md | [`markdown`] |
-//! | the page's form and help | [`describe`] |
+//! `rows` derives the reader and the writer of JSON, `ranges` the check of single fields, [`markdown`] docs/scenario.md, and
+//! [`describe`] the page's form and help.
 //!
 //! `settings!` declares a struct with its rows, `choices!` an enum with its kinds. Types of other crates get rows by
 //! `fields!` and `kinds!`; those crates check the ranges. `words!` declares choices without settings.

@@ -125,19 +125,13 @@ fields! {
 
 words! {
     Regulator {
-        /// average of an ideal chopper
-        Averaged = "averaged" => label("averaged");
-        /// fixed off time, evaluated at grid points
-        Chopper = "chopper" => label("chopper");
+        Averaged = "averaged", "averaged": "average of an ideal chopper";
+        Chopper = "chopper", "chopper": "fixed off time, evaluated at grid points";
     }
     Decay {
-        /// the phase is short-circuited
-        Slow = "slow" => label("slow");
-        /// the supply opposes the current
-        Fast = "fast" => label("fast");
-        /// fast for the fast decay fraction of the off time, then slow
-        Mixed = "mixed" => label("mixed");
-        /// mixed if the target fell at the last step, slow if it rose
-        Auto = "auto" => label("automatic");
+        Slow = "slow", "slow": "the phase is short-circuited";
+        Fast = "fast", "fast": "the supply opposes the current";
+        Mixed = "mixed", "mixed": "fast for the fast decay fraction of the off time, then slow";
+        Auto = "auto", "automatic": "mixed if the target fell at the last step, slow if it rose";
     }
 }

@@ -285,45 +285,30 @@ fields! {
 
 words! {
     TrapezoidMethod {
-        /// whole pulse rates, one per step, and whole timer reloads (Sonobe 2011)
-        Table = "table" => label("table and timer");
-        /// step k where the ideal curve crosses k - 1/2
-        Exact = "exact" => label("exact");
+        Table = "table", "table and timer": "whole pulse rates, one per step, and whole timer reloads (Sonobe 2011)";
+        Exact = "exact", "exact": "step k where the ideal curve crosses k - 1/2";
     }
     ShortMove {
-        /// run the whole move at the start speed (Zhang 2012)
-        Document = "at_start_speed" => label("at start speed");
-        /// accelerate to the highest rate that fits, then decelerate
-        Reverse = "reverse" => label("accelerate and decelerate");
+        Document = "at_start_speed", "at start speed": "run the whole move at the start speed (Zhang 2012)";
+        Reverse = "reverse", "accelerate and decelerate": "accelerate to the highest rate that fits, then decelerate";
     }
     CosineMethod {
-        /// step k where the ideal curve crosses k - 1/2
-        Exact = "exact" => label("exact");
-        /// whole steps per time slice, with the time error of Song 2021
-        Sliced = "sliced" => label("in slices");
+        Exact = "exact", "exact": "step k where the ideal curve crosses k - 1/2";
+        Sliced = "sliced", "in slices": "whole steps per time slice, with the time error of Song 2021";
     }
     RampShape {
-        /// 1/(1 + e^-x), stretched from rest to full speed
-        Sigmoid = "sigmoid" => label("sigmoid");
-        /// 3x^2 - 2x^3
-        Bezier = "bezier" => label("Bezier");
-        /// constant acceleration
-        Straight = "straight" => label("straight");
-        /// 1 - e^-x over the time constants
-        Exponential = "exponential" => label("exponential");
+        Sigmoid = "sigmoid", "sigmoid": "1/(1 + e^-x), stretched from rest to full speed";
+        Bezier = "bezier", "Bezier": "3x^2 - 2x^3";
+        Straight = "straight", "straight": "constant acceleration";
+        Exponential = "exponential", "exponential": "1 - e^-x over the time constants";
     }
     PointUnit {
-        /// steps
-        Steps = "steps" => label("steps");
-        /// millimeters
-        Millimeters = "mm" => label("mm");
-        /// degrees
-        Degrees = "deg" => label("°");
+        Steps = "steps", "steps": "steps";
+        Millimeters = "mm", "mm": "millimeters";
+        Degrees = "deg", "°": "degrees";
     }
     Interpolation {
-        /// lines between points
-        Straight = "straight" => label("straight");
-        /// smooth, from rest to rest
-        Smooth = "smooth" => label("smooth");
+        Straight = "straight", "straight": "lines between points";
+        Smooth = "smooth", "smooth": "smooth, from rest to rest";
     }
 }

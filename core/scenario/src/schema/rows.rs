@@ -169,13 +169,13 @@ macro_rules! last {
     };
 }
 
-/// Words for an enum's variants, with labels for the form.
+/// Words for an enum's variants, each with its label in the form and its meaning in docs/scenario.md.
 macro_rules! words {
-    ($($ty:ty { $($(#[doc = $doc:literal])* $variant:ident = $word:literal => label($label:literal);)* })*) => {$(
+    ($($ty:ty { $($variant:ident = $word:literal, $label:literal: $meaning:expr;)* })*) => {$(
         impl $crate::schema::Typed for $ty {
             const TYPE: $crate::schema::Type = {
                 const WORDS: &[$crate::schema::Word] =
-                    &[$($crate::schema::Word { name: $word, label: $label, doc: concat!($($doc),*) }),*];
+                    &[$($crate::schema::Word { name: $word, label: $label, doc: $meaning }),*];
                 $crate::schema::Type::Word(WORDS)
             };
         }
@@ -217,7 +217,7 @@ macro_rules! word_enums {
         }
 
         $crate::schema::rows::words! { $name {
-            $($(#[doc = $word_doc])* $variant = $word => label($label);)*
+            $($variant = $word, $label: concat!($($word_doc),*);)*
         } }
     )*};
 }

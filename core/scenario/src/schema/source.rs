@@ -60,10 +60,8 @@ pub enum MotionEngine {
 
 words! {
     MotionEngine {
-        /// the host sends the number of steps of each tick
-        Ticks = "ticks" => label("ticks (packets from the host)");
-        /// nothing is sent; each step comes in its exact cycle
-        Segments = "segments" => label("step table (timer interrupt)");
+        Ticks = "ticks", "ticks (packets from the host)": "the host sends the number of steps of each tick";
+        Segments = "segments", "step table (timer interrupt)": "nothing is sent; each step comes in its exact cycle";
     }
 }
 

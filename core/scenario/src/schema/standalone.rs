@@ -138,84 +138,48 @@ word_enums! {
 
 words! {
     ShortMove {
-        /// run the whole move at the start-stop rate
-        Document = "at_start_speed" => label("start-stop rate");
-        /// accelerate to the highest rate that fits, then decelerate
-        TurnRound = "reverse" => label("accelerate and decelerate");
+        Document = "at_start_speed", "start-stop rate": "run the whole move at the start-stop rate";
+        TurnRound = "reverse", "accelerate and decelerate": "accelerate to the highest rate that fits, then decelerate";
     }
     Release {
-        /// stops at once (Zhang 2012)
-        AtOnce = "at_once" => label("at once");
-        /// decelerates by the table
-        Ramp = "ramp" => label("by a ramp");
+        AtOnce = "at_once", "at once": "stops at once (Zhang 2012)";
+        Ramp = "ramp", "by a ramp": "decelerates by the table";
     }
     Policy {
-        /// the closing record is written during the hold-up time
-        PowerLoss = "power_loss" => label("when power fails");
-        /// one record before each move and one after it; no hold-up is needed
-        WriteAhead = "write_ahead" => label("before each move");
+        PowerLoss = "power_loss", "when power fails": "the closing record is written during the hold-up time";
+        WriteAhead = "write_ahead", "before each move": "one record before each move and one after it; no hold-up is needed";
     }
     Signal {
-        /// supply; 1 before the first entry
-        Power = "power" => label("power");
-        /// emergency stop
-        Estop = "estop" => label("estop");
-        /// starts the program, or continues after a pause
-        Start = "start" => label("start");
-        /// pauses a move or a delay
-        Pause = "pause" => label("pause");
-        /// jogs right while held
-        JogPlus = "jog_plus" => label("jog_plus");
-        /// jogs left while held
-        JogMinus = "jog_minus" => label("jog_minus");
-        /// returns to zero
-        Zero = "zero" => label("zero");
-        /// starts homing
-        Home = "home" => label("home");
-        /// fine jog and setting of zero
-        Debug = "debug" => label("debug");
-        /// opens the numbers
-        System = "system" => label("system");
-        /// confirms the entry; in fine jog sets the zero
-        Ok = "ok" => label("ok");
-        /// leaves the numbers
-        Back = "back" => label("back");
-        /// clears an alarm, a pause or an entry
-        Clear = "clear" => label("clear");
-        /// digit 0
-        Key0 = "key_0" => label("key_0");
-        /// digit 1
-        Key1 = "key_1" => label("key_1");
-        /// digit 2
-        Key2 = "key_2" => label("key_2");
-        /// digit 3
-        Key3 = "key_3" => label("key_3");
-        /// digit 4
-        Key4 = "key_4" => label("key_4");
-        /// digit 5
-        Key5 = "key_5" => label("key_5");
-        /// digit 6
-        Key6 = "key_6" => label("key_6");
-        /// digit 7
-        Key7 = "key_7" => label("key_7");
-        /// digit 8
-        Key8 = "key_8" => label("key_8");
-        /// digit 9
-        Key9 = "key_9" => label("key_9");
-        /// left limit switch
-        LimitMin = "limit_min" => label("left limit switch");
-        /// right limit switch
-        LimitMax = "limit_max" => label("right limit switch");
-        /// home switch
-        HomeSwitch = "home_switch" => label("home switch");
-        /// input 0
-        In0 = "in_0" => label("in_0");
-        /// input 1
-        In1 = "in_1" => label("in_1");
-        /// input 2
-        In2 = "in_2" => label("in_2");
-        /// input 3
-        In3 = "in_3" => label("in_3");
+        Power = "power", "power": "supply; 1 before the first entry";
+        Estop = "estop", "estop": "emergency stop";
+        Start = "start", "start": "starts the program, or continues after a pause";
+        Pause = "pause", "pause": "pauses a move or a delay";
+        JogPlus = "jog_plus", "jog_plus": "jogs right while held";
+        JogMinus = "jog_minus", "jog_minus": "jogs left while held";
+        Zero = "zero", "zero": "returns to zero";
+        Home = "home", "home": "starts homing";
+        Debug = "debug", "debug": "fine jog and setting of zero";
+        System = "system", "system": "opens the numbers";
+        Ok = "ok", "ok": "confirms the entry; in fine jog sets the zero";
+        Back = "back", "back": "leaves the numbers";
+        Clear = "clear", "clear": "clears an alarm, a pause or an entry";
+        Key0 = "key_0", "key_0": "digit 0";
+        Key1 = "key_1", "key_1": "digit 1";
+        Key2 = "key_2", "key_2": "digit 2";
+        Key3 = "key_3", "key_3": "digit 3";
+        Key4 = "key_4", "key_4": "digit 4";
+        Key5 = "key_5", "key_5": "digit 5";
+        Key6 = "key_6", "key_6": "digit 6";
+        Key7 = "key_7", "key_7": "digit 7";
+        Key8 = "key_8", "key_8": "digit 8";
+        Key9 = "key_9", "key_9": "digit 9";
+        LimitMin = "limit_min", "left limit switch": "left limit switch";
+        LimitMax = "limit_max", "right limit switch": "right limit switch";
+        HomeSwitch = "home_switch", "home switch": "home switch";
+        In0 = "in_0", "in_0": "input 0";
+        In1 = "in_1", "in_1": "input 1";
+        In2 = "in_2", "in_2": "input 2";
+        In3 = "in_3", "in_3": "input 3";
     }
 }
 

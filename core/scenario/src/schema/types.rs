@@ -56,14 +56,10 @@ pub struct Field {
 
 /// A field's type in JSON.
 #[derive(Clone, Copy, Debug)]
+#[allow(missing_docs, reason = "fields are named as in Rust's types")]
 pub enum Type {
-    /// An integer.
-    Whole {
-        /// Minimum of the Rust type.
-        min: i64,
-        /// Maximum of the Rust type.
-        max: u64,
-    },
+    /// An integer with the range of its Rust type.
+    Whole { min: i64, max: u64 },
     /// A number that may have a fraction.
     Number,
     /// True or false.
