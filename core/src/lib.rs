@@ -21,27 +21,16 @@
 //! .expect("a valid scenario");
 //! let mut recording = StoredRun::default(); // or any Sink: a digest, a file, a check
 //! let run = experiment.run(&mut recording);
-//!
 //! assert_eq!(run.positions()[0], 3200);
 //! assert_eq!(format!("{:016x}", recording.digest.value()), "ed82c77232a01a3a");
 //! assert_eq!(steps(&recording.trace, 0).len(), 3200); // each with its cycle
 //!
+//! // The plan has the exact time of each step, here in cycles of 16 MHz.
+//! assert_eq!(experiment.plans()[0].due_steps(16_000_000).count(), 3200);
+//!
 //! // All problems are reported at once, each with its path.
 //! let problems = Experiment::from_json(r#"{ "bus": { "slots": 200 } }"#).unwrap_err();
 //! assert_eq!(problems[0].path, "bus.slots");
-//! # }
-//! ```
-//!
-//! # Get step times
-//!
-//! A plan has the exact time of each step; here in cycles of a clock of 16 MHz.
-//!
-//! ```
-//! # #[cfg(feature = "sim")] {
-//! # use stepscope_core::sim::Experiment;
-//! let experiment = Experiment::from_json("{}").expect("the default motion");
-//! let cycles: Vec<u64> = experiment.plans()[0].due_steps(16_000_000).map(|step| step.cycle).collect();
-//! assert_eq!(cycles.len(), 3200);
 //! # }
 //! ```
 //!

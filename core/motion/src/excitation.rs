@@ -13,14 +13,6 @@
 //! ```
 //!
 //! Four full steps are one electrical period: the rotor has moved by one tooth, and the currents repeat.
-//!
-//! ```
-//! use stepscope_motion::excitation::Excitation;
-//!
-//! assert_eq!(Excitation::OneTwoPhase.steps_per_period(), 8);
-//! assert_eq!(Excitation::OneTwoPhase.currents(1), (1.0, 1.0));
-//! assert_eq!(Excitation::OneTwoPhase.currents(-1), (1.0, -1.0));
-//! ```
 
 use core::f64::consts::FRAC_PI_2;
 

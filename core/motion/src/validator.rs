@@ -82,7 +82,6 @@ impl<C> Validator<C> {
 }
 
 impl<C: From<ValueError>> Validator<C> {
-    /// Adds a problem of `field`.
     pub fn add(&mut self, field: &str, cause: impl Into<C>) {
         self.count += 1;
         if self.problems.len() < MAX_PROBLEMS {
@@ -144,7 +143,6 @@ impl<C: From<ValueError>> Validator<C> {
         self.count == 0
     }
 
-    /// The listed problems.
     pub fn problems(self) -> Vec<Problem<C>> {
         self.problems
     }

@@ -109,8 +109,7 @@ pub struct CheckedSegments {
 
 impl CheckedSegments {
     /// Validates the lists of channels 0, 1, ….
-    /// Errors: the first `max` refusals. After a time beyond 64 bits the rest of the list is skipped; a segment with a
-    /// bad interval takes no time.
+    /// Errors: the first `max` refusals, of each list up to a time beyond 64 bits; a segment with a bad interval takes no time.
     pub fn new(pulse: PulseTimes, lists: Vec<SegmentList>, max: usize) -> Result<Self, Vec<Refused>> {
         let mut refused = Vec::new();
         let mut all = Self { pulse, lists: Vec::new(), steps: 0, dir_changes: 0, end: Instant::RESET };

@@ -13,7 +13,6 @@ pub const SIGNED_TORQUE_MN_M: RangeInclusive<f64> = -1e6..=1e6;
 pub const VISCOUS_UN_M_S: RangeInclusive<f64> = 0.0..=1e9;
 pub const SINE_PER_TURN: RangeInclusive<f64> = 0.001..=1000.0;
 pub const SINE_PHASE_DEG: RangeInclusive<f64> = -360.0..=360.0;
-/// Stiffness of a coupling in N*m/rad.
 pub const COUPLING_N_M_RAD: RangeInclusive<f64> = 0.001..=1e6;
 /// Share of the off-time with fast decay.
 pub const SHARE: RangeInclusive<f64> = 0.0..=1.0;
@@ -22,11 +21,9 @@ pub const CHOPPER_US: RangeInclusive<f64> = 0.0..=1e6;
 pub const DAC_LEVELS: RangeInclusive<u64> = 1..=1023;
 pub const BRIDGE_OHM: RangeInclusive<f64> = 0.0..=10.0;
 pub const DIODE_V: RangeInclusive<f64> = 0.0..=2.0;
-/// Cycles per grid step.
 pub const STEP_CYCLES: RangeInclusive<u64> = 1..=1_000_000;
 pub const SOURCE_OHM: RangeInclusive<f64> = 0.001..=100.0;
 pub const BUFFER_UF: RangeInclusive<f64> = 10.0..=1e6;
-/// Idle current of a driver.
 pub const IDLE_MA: RangeInclusive<f64> = 0.0..=1e6;
 /// Duration of a run after its last step.
 pub const TAIL_S: RangeInclusive<f64> = 0.0..=10.0;
@@ -43,7 +40,6 @@ pub const OFFSET_LSB: RangeInclusive<f64> = -1e6..=1e6;
 pub const NOISE_LSB: RangeInclusive<f64> = 0.0..=1e6;
 /// Seed of the noise: the integers that a JSON number holds exactly.
 pub const SEED: RangeInclusive<u64> = 0..=9_007_199_254_740_991;
-/// Overload current.
 pub const THRESHOLD_A: RangeInclusive<f64> = 0.001..=1e4;
 /// Consecutive conversions of an overload.
 pub const SAMPLES: RangeInclusive<u64> = 1..=1_000_000;

@@ -206,7 +206,6 @@ impl Measures {
         new
     }
 
-    /// The measures so far.
     pub fn result(&self, plant: &Plant) -> PlantResult {
         PlantResult {
             cycle: plant.cycle(),

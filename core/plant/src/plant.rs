@@ -15,8 +15,8 @@ use crate::{
 use alloc::vec::Vec;
 use stepscope_peripheral::signal::{Levels, Record};
 
-/// Drivers, motors, supply and sensors on the bus of one controller. [`Plant::record`] takes the edges of the bus; [`Plant::advance`] declares that none comes before a cycle. How a run
-/// is divided into calls has no effect on the result.
+/// Drivers, motors, supply and sensors on the bus of one controller. [`Plant::record`] takes the edges of the bus,
+/// [`Plant::advance`] declares that none comes before a cycle. How a run is divided into calls does not affect the result.
 #[derive(Clone, Debug)]
 pub struct Plant {
     clock_hz: f64,

@@ -1,9 +1,8 @@
 //! A correctly rounded square root in integer arithmetic: the same bits as IEEE 754, without a mathematics library.
 
-/// The square root of `x`, correctly rounded; NaN below 0.
-///
-/// x = m*2^e with e even and 109 or 110 bits in m has the root r*2^(e/2), where r is the integer root of m. r has 55 bits,
-/// two more than an f64; the remainder decides whether the cut-off bits are exactly a half.
+/// The square root of `x`, correctly rounded; NaN below 0. x = m*2^e with e even and 109 or 110 bits in m
+/// has the root r*2^(e/2), where r is the integer root of m. r has 55 bits, two more than an f64; the remainder decides
+/// whether the cut-off bits are exactly a half.
 pub(crate) fn square_root(x: f64) -> f64 {
     if x.is_nan() || x < 0.0 {
         return f64::NAN;

@@ -114,7 +114,6 @@ fn floor(x: f64) -> i64 {
     whole - i64::from(whole as f64 > x)
 }
 
-/// A generator of random numbers.
 #[derive(Clone, Debug)]
 struct SplitMix64(u64);
 

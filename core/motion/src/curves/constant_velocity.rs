@@ -75,14 +75,13 @@ impl Curve for ConstantVelocity {
     }
 }
 
-/// A pause.
+/// A pause of at least 0 s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dwell {
     duration_s: f64,
 }
 
 impl Dwell {
-    /// A pause of `duration_s` >= 0.
     pub fn new(duration_s: f64) -> Self {
         Self { duration_s }
     }

@@ -66,7 +66,6 @@ impl Peaks {
         })
     }
 
-    /// The maximum of each number.
     pub fn max(self, other: Self) -> Self {
         Self {
             speed: greater(self.speed, other.speed),

@@ -166,9 +166,8 @@ impl JerkLimited {
     }
 }
 
-/// Error of a time in f64: 6 u of each earlier phase, and 14 u of the remaining steps at the end of a phase, of which the
-/// speed there makes a third of the time. With the root, the difference from the end and the product with the clock it is
-/// below 48 u.
+/// Error of a time in f64: 6 u of each earlier phase, and a third of 14 u of the steps that are left at the end of a phase.
+/// With the root, the difference from the end and the product with the clock it is below 48 u.
 impl Schedule for JerkLimited {
     fn duration(&self, clock_hz: u32) -> CycleTime {
         CycleTime::of(Phases::new(self.halves.steps, self.limits).duration_s * f64::from(clock_hz))

@@ -7,15 +7,6 @@
 //!    |       '-._         from the cosine is at most d1
 //!  0 +-----------'- 512
 //! ```
-//!
-//! ```
-//! use stepscope_motion::curves::polyline::{breakpoints, next_deviation};
-//!
-//! // The paper's six segments per quarter.
-//! let six = breakpoints(0.0054);
-//! assert_eq!(six, [0, 67, 136, 208, 287, 381, 512]);
-//! assert!(next_deviation(&six).is_some_and(|d1| d1 > 0.0054));
-//! ```
 
 use crate::{bisection::first_near, curves::curve::greater, round_half_up};
 use alloc::vec::Vec;

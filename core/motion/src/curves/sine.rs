@@ -43,9 +43,8 @@ impl Sine {
     }
 }
 
-/// Error of a time in f64: one rounding u of the quotient and 1.5 u of its root, which the arcsine up to 45 degrees
-/// multiplies by up to 4/pi. With its own two, the product with 2/pi, the sum of half periods and the product with their
-/// cycles it is at most 10 u.
+/// Error of a time in f64: 2.5 u of the quotient's root, which the arcsine up to 45 degrees multiplies by up to 4/pi, and its
+/// own two. With both products and the sum of half periods it is at most 10 u.
 impl Schedule for Sine {
     fn duration(&self, clock_hz: u32) -> CycleTime {
         self.oscillation.duration(clock_hz)

@@ -71,7 +71,6 @@ impl TrapezoidTable {
         &self.table
     }
 
-    /// Rows of the whole table.
     pub fn rows(&self) -> u64 {
         self.table.top().saturating_add(1)
     }

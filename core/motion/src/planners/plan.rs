@@ -14,8 +14,7 @@ use stepscope_peripheral::signal::MAX_CHANNELS;
 
 const MAX_DURATION_S: f64 = 1e6;
 
-/// Plans several lists of axes with their paths, one list per controller. All of them together share the limits of tables
-/// and sines of [`plan_axis`].
+/// Plans lists of axes with their paths, one per controller. They share the limits of tables and sines of [`plan_axis`].
 /// Errors: every problem of every axis, each with its path.
 pub fn plan_lists<'a>(
     lists: impl IntoIterator<Item = (String, &'a [Axis])>,
@@ -46,7 +45,6 @@ pub fn plan_move(motion: &Move, path: &str) -> Result<AxisPlan, Vec<Problem>> {
 }
 
 /// Plans an axis; `path` is its location in the scenario, such as `source.motion.axes[0]`.
-///
 /// Distances are rounded half up to whole steps. An axis has at most 64 moves, 1e6 s, 1e6 rows of acceleration tables, and
 /// 65536 segments of sine quarters.
 /// Errors: every problem of the axis, each with its path.

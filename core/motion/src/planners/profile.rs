@@ -92,7 +92,6 @@ impl Profile {
         self.oscillation().map(|oscillation| (oscillation.period_s, oscillation.periods))
     }
 
-    /// Number of steps in both directions.
     pub fn step_count(&self) -> u64 {
         match (self, self.oscillation()) {
             (_, Some(oscillation)) => oscillation.step_count(),

@@ -23,7 +23,6 @@ use core::num::NonZeroU32;
 use stepscope_peripheral::segment::{LAST_CYCLE, PulseTimes, Segment, SegmentList};
 use stepscope_peripheral::units::Cycles;
 
-/// Maximum tolerance of a compressed list.
 pub const MAX_TOLERANCE: Cycles = Cycles(1 << 24);
 /// Maximum entries of a list: 64 MB.
 const MAX_ENTRIES: usize = 2_000_000;

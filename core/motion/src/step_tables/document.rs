@@ -44,11 +44,8 @@ pub(super) fn document(plan: &AxisPlan, format: EntryFormat, clock_hz: u32) -> R
     Ok(SegmentList { start: START, segments: table.segments })
 }
 
-/// Bytes of the plan's tables as in their papers; `None` if a move has no table.
-///
-/// A row of an acceleration table is a reload of 2 bytes, or 4 if one needs them; of a staircase a rate and its steps, 4
-/// bytes together; sine segments are those of a quarter ([`SineSegments::memory`]). A constant rate is a 4-byte interval
-/// and a 4-byte count, a dwell a 4-byte time. A sliced move has steps and rate, 2 bytes each, per slice.
+/// Bytes of the plan's tables as in their papers; `None` if a move has no table. A row of a staircase has a rate and its steps,
+/// a slice its steps and rate, 2 bytes each; a constant rate an interval and a count, a dwell its time, 4 bytes each.
 pub(super) fn document_bytes(plan: &AxisPlan) -> Option<u64> {
     plan.moves().iter().try_fold(0, |sum: u64, planned| {
         let bytes = match &planned.profile {

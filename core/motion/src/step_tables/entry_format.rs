@@ -67,22 +67,19 @@ impl EntryFormat {
         ((self.interval_bits + self.count_bits + self.add_bits) / 8) as u64
     }
 
-    /// Maximum interval, in 1/2^fraction_bits cycle.
+    /// Maximum interval; like the limits of add in 1/2^fraction_bits cycle.
     pub const fn max_interval(self) -> u64 {
         u64::MAX >> (64 - self.interval_bits)
     }
 
-    /// Maximum steps per entry.
     pub const fn max_count(self) -> u32 {
         u32::MAX >> (32 - self.count_bits)
     }
 
-    /// Minimum add, in 1/2^fraction_bits cycle.
     pub const fn min_add(self) -> i64 {
         i64::MIN >> (64 - self.add_bits)
     }
 
-    /// Maximum add, in 1/2^fraction_bits cycle.
     pub const fn max_add(self) -> i64 {
         i64::MAX >> (64 - self.add_bits)
     }

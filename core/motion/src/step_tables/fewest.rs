@@ -203,10 +203,9 @@ impl Section {
         spent
     }
 
-    /// Marks the times that entries of `count` >= 3 steps reach; returns the number of steps examined.
-    ///
-    /// With time 0 at the start and `time` at the end, step m is at m*time/count - add*m*(count - m)/2: so the windows
-    /// allow a range of adds, and the interval is an integer for every add, or for every second.
+    /// Marks the times that entries of `count` >= 3 steps reach; returns the number of steps examined. With
+    /// time 0 at the start and `time` at the end, step m is at m*time/count - add*m*(count - m)/2: so the windows allow a
+    /// range of adds, and the interval is an integer for every add, or for every second.
     fn short(&self, begin: StartTimes<'_>, count: usize, next: &mut Layer) -> u64 {
         let end = begin.step + count;
         let Some(&window) =

@@ -23,8 +23,8 @@ pub(super) const MAX_STEPS: u64 = 4_000_000;
 pub(super) const START: Instant = Instant(1);
 
 /// The exact segments of the plans, one per channel, for pulses of `pulse`.
-/// Errors: too many plans or steps; or the first step of each axis that is too soon for a pulse or too late for 48.16 fixed point. The
-/// first interval counts from the motion's start.
+/// Errors: too many plans or steps; or the first step of each axis that is too soon for a pulse, also after the start of the
+/// motion, or too late for 48.16 fixed point.
 pub fn exact_segments(
     plans: &[AxisPlan],
     at: AxesPath<'_>,

@@ -50,7 +50,6 @@ pub struct Stored {
 }
 
 impl Stored {
-    /// Bytes of all entries.
     pub fn bytes(&self) -> u64 {
         self.entries.len() as u64 * self.format.bytes()
     }
@@ -68,8 +67,8 @@ impl Stored {
 }
 
 /// Stores the step times of `plan` in a form.
-/// Errors: as [`compressed`]; more than 4 000 000 steps for the exact form, or [`MAX_TABLE_STEPS`] for others; for the paper's table,
-/// a move without one, or a rate too high for `pulse`. The number of steps is checked first.
+/// Errors: more than 4 000 000 steps for the exact form, or [`MAX_TABLE_STEPS`] for others; for the paper's table, a move
+/// without one, or a rate too high for `pulse`; else as [`compressed`].
 pub fn stored(
     plan: &AxisPlan,
     form: Form,
@@ -143,11 +142,9 @@ fn table<I: Iterator<Item = ScheduledStep>>(
     Ok(Stored { list, format, entries, document_bytes: None, error, surplus })
 }
 
-/// Each step in its exact cycle, in the fewest entries with integer intervals, or with fractional intervals if a search finds
-/// fewer.
-///
-/// With integer intervals no list is shorter, because the length of an entry depends only on its first step, and the longest
-/// entry leaves the fewest steps. (This holds while each interval fits into an entry.)
+/// Each step in its exact cycle, in the fewest entries with integer intervals, or with fractional ones if a search finds fewer.
+/// With integers the longest entries are the fewest, because the length of an entry depends only on its first step (while each
+/// interval fits into an entry).
 fn smallest_exact<I: Iterator<Item = ScheduledStep>>(
     due: impl Fn() -> I,
     format: EntryFormat,

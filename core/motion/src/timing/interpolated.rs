@@ -24,9 +24,8 @@ const MIN_STEPS: f64 = 4.0 * NODES as f64;
 const MAX_STEPS: f64 = 4096.0;
 /// Maximum error in cycles of the polynomial itself.
 const MAX_TRUNCATION: f64 = 1.0 / 131_072.0;
-/// The last two coefficients of a block are at most its error divided by this. The missing coefficients change a time by at
-/// most twice their sum, which is less than 16 times the last two if each pair is at most 8/9 of the previous one. In
-/// accepted blocks of analytic curves they decrease much faster.
+/// The last two coefficients of a block are at most its error divided by this. The missing ones change a time by at most twice
+/// their sum, less than 16 times the last two if each pair is at most 8/9 of the previous one; they decrease much faster.
 const SAFETY: f64 = 16.0;
 /// Growth of the nodes' errors between the nodes: Lebesgue's constant is 2.3, and sums have roundings.
 const GROWTH: f64 = 4.0;

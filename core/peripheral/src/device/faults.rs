@@ -45,7 +45,6 @@ impl Faults {
         Self(bits & KNOWN)
     }
 
-    /// The faults in either.
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }

@@ -35,7 +35,6 @@ pub struct SelfTest {
 }
 
 impl SelfTest {
-    /// The time slot of a channel.
     pub const fn of(config: &Config, channel: u8) -> Self {
         let period = config.step_period();
         let start = 1 + channel as u64 * TEST_PERIODS * period;

@@ -4,14 +4,6 @@
 //! bit k of a byte      t0 + floor(k * clock_hz / baud)
 //! byte j back to back  t0 + floor(10 * j * clock_hz / baud)
 //! ```
-//!
-//! ```
-//! use stepscope_peripheral::{units::Cycles, wire::BitTimes};
-//!
-//! let times = BitTimes::new(16_000_000, 115_200); // 138.9 cycles per bit
-//! assert_eq!([0, 1, 2].map(|bit| times.bit(bit)), [Cycles(0), Cycles(138), Cycles(277)]);
-//! assert_eq!(times.byte(1), Cycles(1388));
-//! ```
 
 use crate::units::Cycles;
 

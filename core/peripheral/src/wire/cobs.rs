@@ -4,14 +4,6 @@
 //! wire     code  d  d  code  d  …  00       a code is the distance to the next zero, or to the end
 //! content        d  d    0   d  …           255 is the distance to the next code, without a zero there
 //! ```
-//!
-//! ```
-//! use stepscope_peripheral::wire::cobs::{CobsByte, CobsDecoder};
-//!
-//! let mut reader = CobsDecoder::default();
-//! let read = [2, 7, 2, 8, 0].map(|byte| reader.byte(byte)); // contains 7, 0, 8
-//! assert_eq!(read[1..], [CobsByte::Content, CobsByte::Zero, CobsByte::Content, CobsByte::End]);
-//! ```
 
 use cobs::{DecodeResult, DecoderState};
 

@@ -200,7 +200,6 @@ impl<'a> Ticks<'a> {
         self.commands
     }
 
-    /// The ticks in order.
     pub fn iter(&self) -> impl Iterator<Item = Tick> + use<'a> {
         self.commands.chunks(self.channels).map(|commands| {
             let mut tick = [0; MAX_CHANNELS];
@@ -267,7 +266,6 @@ impl Deframer {
         None
     }
 
-    /// Whether bytes wait for their delimiter.
     pub const fn is_open(&self) -> bool {
         self.dropping || self.cobs.is_open()
     }

@@ -31,7 +31,6 @@ pub struct ChannelCommand {
 }
 
 impl ChannelCommand {
-    /// Decodes a byte.
     pub const fn parse(byte: u8) -> Self {
         Self { right: byte & RIGHT != 0, steps: byte & MAX_STEPS }
     }

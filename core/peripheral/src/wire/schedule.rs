@@ -74,7 +74,6 @@ impl Schedule {
         self.sends.is_empty()
     }
 
-    /// Bytes of all sends.
     pub fn total_bytes(&self) -> usize {
         self.bytes.len()
     }

@@ -7,18 +7,6 @@
 //! stop bit high: the byte is delivered in that cycle; the receiver is armed again in the next cycle.
 //! stop bit low: framing error. The receiver is armed one cycle after the line is high again.
 //! ```
-//!
-//! ```
-//! use stepscope_peripheral::{units::{Cycles, Instant}, wire::uart::{RxEvent, Receiver}};
-//!
-//! // Bits of 16 cycles; the line is low from cycle 100 to 179: a start bit and four zeros.
-//! let mut receiver = Receiver::new(Cycles(16));
-//! let level = |cycle: u64| !(100..180).contains(&cycle);
-//! let event = (1..300).find_map(|cycle| {
-//!     receiver.clock(Instant(cycle), level(cycle)).map(|event| (cycle, event))
-//! });
-//! assert_eq!(event, Some((252, RxEvent::Byte(0xf0)))); // 100 + 8 + 9 * 16
-//! ```
 
 use crate::units::{Cycles, Instant};
 

@@ -7,16 +7,15 @@ use alloc::{string::String, vec::Vec};
 use stepscope_peripheral::config::{Bus, limits};
 
 settings! {
-    /// A scenario is one experiment as JSON. Files, share links and the page's form hold it. Every field has a
-    /// default, so `{}` is a valid scenario. Unknown and duplicate fields are errors. Names contain the unit:
-    /// `_cycles` counts the peripheral's clock, `_s` is seconds, `_hz` is hertz; torques are written as in a data sheet
-    /// (`_mN_m`). A choice is an object with one key
-    /// that names it: `{ "mm": 250 }`, `{ "cosine": { … } }`. A whole number may also be written as `16000000.0` or
-    /// `16e6`.
+    /// A scenario is one experiment as JSON. Files, share links and the page's form hold it. Every field has a default, so
+    /// `{}` is a valid scenario. Unknown and duplicate fields are errors. Names contain the unit: `_cycles` counts the
+    /// peripheral's clock, `_s` is seconds, `_hz` is hertz; torques are written as in a data sheet (`_mN_m`). A choice is an
+    /// object with one key that names it: `{ "mm": 250 }`, `{ "cosine": { … } }`. A whole number may also be written as
+    /// `16000000.0` or `16e6`.
     ///
-    /// All problems of a scenario are reported at once, each with its path, the value and the allowed values.
-    /// Versions 1 and 2, which had other names for some fields, can still be read. Without `version`, the names of all
-    /// versions are accepted. Directions may be written as 1 (positive) and 0 (negative).
+    /// All problems of a scenario are reported at once, each with its path, the value and the allowed values. Versions 1 and
+    /// 2, which had other names for some fields, can still be read. Without `version`, the names of all versions are
+    /// accepted. Directions may be written as 1 (positive) and 0 (negative).
     pub struct Scenario {
         /// Version of this format.
         pub version: u32 = VERSION => label("Version").range_text("1 to 3"),

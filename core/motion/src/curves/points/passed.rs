@@ -49,9 +49,8 @@ impl Points {
         Some(Cubic { from_s, to_s, from, to, from_speed, to_speed })
     }
 
-    /// Number of steps due by `t` s; the position there in f64 has an error of at most `max_error`. `exact_time` returns the
-    /// time in s, a tie later (true) or earlier (false): a half-integer at `t` is reached from below, but not yet left from
-    /// above.
+    /// Number of steps due by `t` s; the position there in f64 has an error of at most `max_error`. `exact_time` returns `t` a
+    /// tie later (true) or earlier (false): a half-integer at `t` is reached from below, but not yet left from above.
     pub(crate) fn due_by(&self, t: f64, max_error: f64, exact_time: impl Fn(bool) -> F106) -> i64 {
         let raised = self.piece_at(t).map_or(0.0, |piece| piece.position(t)) + 0.5;
         let nearest = libm::floor(raised + 0.5);
