@@ -16,8 +16,7 @@ settings! {
     /// line each controller starts with its first frame.
     pub struct Controller {
         /// Address, different for each controller.
-        pub address: u8 = 1 => label("Address")
-            .whole(limits::ADDRESS)
+        pub address: u8 = 1 => label("Address").whole(limits::ADDRESS)
             .term("Address", "Number of a controller on a shared line. A controller accepts packets that begin with its own address or with 255.")
             .from(PATENT),
         /// Bit rate of its receiver and its replies, if its clock differs from the host's.

@@ -45,33 +45,23 @@ settings! {
     /// Minimum times of a driver; 0 is not checked.
     pub struct TimingRules {
         /// From the rise of STEP to its fall.
-        pub step_high_ns: u32 = 0 => label("STEP high")
-            .unit("ns")
-            .whole(NS)
+        pub step_high_ns: u32 = 0 => label("STEP high").unit("ns").whole(NS)
             .term("STEP high", "From the rise of STEP to its fall.")
             .from(SHEETS),
         /// From the fall of STEP to its next rise.
-        pub step_low_ns: u32 = 0 => label("STEP low")
-            .unit("ns")
-            .whole(NS)
+        pub step_low_ns: u32 = 0 => label("STEP low").unit("ns").whole(NS)
             .term("STEP low", "From the fall of STEP to its next rise.")
             .from(SHEETS),
         /// From the last change of DIR to the rise of STEP.
-        pub dir_setup_ns: u32 = 0 => label("DIR set-up")
-            .unit("ns")
-            .whole(NS)
+        pub dir_setup_ns: u32 = 0 => label("DIR set-up").unit("ns").whole(NS)
             .term("DIR set-up", "From the last change of DIR to the rise of STEP.")
             .from(SHEETS),
         /// From the rise of STEP to the next change of DIR.
-        pub dir_hold_ns: u32 = 0 => label("DIR hold")
-            .unit("ns")
-            .whole(NS)
+        pub dir_hold_ns: u32 = 0 => label("DIR hold").unit("ns").whole(NS)
             .term("DIR hold", "From the rise of STEP to the next change of DIR.")
             .from(SHEETS),
         /// From the rise of EN, or from reset, to the first rise of STEP of a channel.
-        pub enable_wake_ns: u32 = 0 => label("EN wake-up")
-            .unit("ns")
-            .whole(NS)
+        pub enable_wake_ns: u32 = 0 => label("EN wake-up").unit("ns").whole(NS)
             .term("EN wake-up", "From the rise of EN, or from reset, to the first step.")
             .from(SHEETS),
     }

@@ -20,17 +20,13 @@ settings! {
         /// Version of this format.
         pub version: u32 = VERSION => label("Version").range_text("1 to 3"),
         /// Name of the experiment; part of the link.
-        pub title: String = String::new() => label("Name")
-            .length(0..=120, "characters")
+        pub title: String = String::new() => label("Name").length(0..=120, "characters")
             .term("Name", "Name of the experiment. It is part of the link."),
         /// What to look at, and the source of the values.
-        pub note: String = String::new() => label("Note")
-            .length(0..=2000, "characters")
+        pub note: String = String::new() => label("Note").length(0..=2000, "characters")
             .term("Note", "What the person who opens the link should see and try."),
         /// Clock of the peripheral. All `_cycles` fields count periods of this clock.
-        pub clock_hz: u32 = 16_000_000 => label("Clock")
-            .unit("Hz")
-            .whole(limits::CLOCK_HZ)
+        pub clock_hz: u32 = 16_000_000 => label("Clock").unit("Hz").whole(limits::CLOCK_HZ)
             .term("Clock", "Clock of the controller. One period is a cycle, and everything happens in whole cycles.")
             .from(PATENT),
         /// The sequencer and its driver bus.
@@ -40,9 +36,7 @@ settings! {
         /// What the host sends, or what the peripheral runs without a host.
         pub source: Source = Source::default() => label("Source"),
         /// Length of the run: cycles 0 to `run_cycles` - 1.
-        pub run_cycles: Option<u64> = None => label("Run length")
-            .unit("cycles")
-            .whole(1..=END_OF_TIME)
+        pub run_cycles: Option<u64> = None => label("Run length").unit("cycles").whole(1..=END_OF_TIME)
             .null_means("until the last change")
             .term("Run length", "When the run stops. Without it the run ends after the last change."),
         /// Settings of the spectrum.
@@ -65,20 +59,16 @@ settings! {
             .range_text("0 to the number of axes - 1 (of channels if there are no axes)")
             .term("Axis", "Axis of the spectrum. Axis 0 drives channel 0."),
         /// Highest harmonic included in the distortion.
-        pub max_harmonic: u16 = 40 => label("Max harmonic")
-            .whole(2..=1000)
+        pub max_harmonic: u16 = 40 => label("Max harmonic").whole(2..=1000)
             .term("Max harmonic", "Highest harmonic that the distortion (THD) includes.")
             .from(SINE),
         /// Samples per period of the ideal curve. Every length gives a coherent spectrum; powers of two are fastest.
-        pub fft_length: u32 = 4096 => label("Samples per period")
-            .whole(16..=65_536)
+        pub fft_length: u32 = 4096 => label("Samples per period").whole(16..=65_536)
             .term("Samples", "Samples per period for the Fourier transform. They span exactly one period, so there is no leakage.")
             .from(SINE),
         /// Bandwidth (−3 dB, first order) of the accelerometer on the rig: |H| = 1/√(1 + (f/f_b)²). Adds the
         /// filtered acceleration to the spectrum.
-        pub sensor_hz: Option<f64> = None => label("Sensor bandwidth")
-            .unit("Hz")
-            .number(1e-3..=1e9)
+        pub sensor_hz: Option<f64> = None => label("Sensor bandwidth").unit("Hz").number(1e-3..=1e9)
             .null_means("no sensor")
             .term("Sensor bandwidth", "An accelerometer is a low-pass filter: at this frequency it measures 71 % of the acceleration, |H| = 1/√(1 + (f/f_b)²). The distortion it measures therefore does not grow with the number of harmonics.")
             .from(OWN),

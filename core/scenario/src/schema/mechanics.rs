@@ -46,9 +46,7 @@ fields! {
         /// Microsteps per full step.
         microsteps: u16 => MICROSTEPS,
         /// One turn is a travel of 2π × radius.
-        radius_mm: f64 => label("Radius")
-            .unit("mm")
-            .number(limits::LENGTH_MM)
+        radius_mm: f64 => label("Radius").unit("mm").number(limits::LENGTH_MM)
             .term("Radius", "Radius of the wheel, pulley or pitch circle.")
             .from(SONOBE),
     }
@@ -59,18 +57,14 @@ fields! {
         /// Microsteps per full step.
         microsteps: u16 => MICROSTEPS,
         /// Travel of the nut per turn.
-        lead_mm: f64 => label("Lead")
-            .unit("mm")
-            .number(limits::LENGTH_MM)
+        lead_mm: f64 => label("Lead").unit("mm").number(limits::LENGTH_MM)
             .term("Lead", "Travel of the nut per turn of the screw.")
             .from(ZHANG),
     }
     /// Units: steps and mm.
     Direct {
         /// Travel of one step.
-        step_mm: f64 => label("One step")
-            .unit("mm")
-            .number(limits::LENGTH_MM)
+        step_mm: f64 => label("One step").unit("mm").number(limits::LENGTH_MM)
             .term("One step", "Travel of one step, measured or given.")
             .from(ZHANG),
     }

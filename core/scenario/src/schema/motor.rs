@@ -15,64 +15,47 @@ fields! {
     /// model: [torque.md](torque.md).
     Motor {
         /// Current per phase, both phases on.
-        rated_current_a: f64 => label("Rated current")
-            .unit("A")
-            .number(limits::RATED_CURRENT_A)
+        rated_current_a: f64 => label("Rated current").unit("A").number(limits::RATED_CURRENT_A)
             .term("Rated current", "Current per phase for which the data sheet gives the holding torque, both phases on.")
             .from(SONG),
         /// Resistance per phase.
-        resistance_ohm: f64 => label("Resistance")
-            .unit("Ω")
-            .number(limits::RESISTANCE_OHM)
+        resistance_ohm: f64 => label("Resistance").unit("Ω").number(limits::RESISTANCE_OHM)
             .term("Resistance", "Resistance of one phase. At low rates it determines the required voltage.")
             .from(SONG),
         /// Inductance per phase.
-        inductance_mh: f64 => label("Inductance")
-            .unit("mH")
-            .number(limits::INDUCTANCE_MH)
+        inductance_mh: f64 => label("Inductance").unit("mH").number(limits::INDUCTANCE_MH)
             .term("Inductance", "Inductance of one phase. At high rates the current cannot follow, so the torque falls.")
             .from(SONG),
         /// Holding torque, both phases at the rated current.
-        holding_torque_mn_m: f64 => label("Holding torque").named("holding_torque_mN_m")
-            .unit("mN·m")
+        holding_torque_mn_m: f64 => label("Holding torque").named("holding_torque_mN_m").unit("mN·m")
             .number(limits::HOLDING_TORQUE_MN_M)
             .term("Holding torque", "Torque with both phases at the rated current. One phase at its peak has 1/√2 of it. The back-EMF follows from it.")
             .from(SONG),
         /// Inertia of the rotor.
-        rotor_inertia_g_cm2: f64 => label("Rotor inertia")
-            .unit("g·cm²")
-            .number(limits::INERTIA_G_CM2)
+        rotor_inertia_g_cm2: f64 => label("Rotor inertia").unit("g·cm²").number(limits::INERTIA_G_CM2)
             .term("Rotor inertia", "Torque for the acceleration = (rotor + load inertia) × acceleration.")
             .from(SONG),
         /// Supply voltage of the driver; an assumption.
-        supply_v: f64 => label("Supply")
-            .unit("V")
-            .number(limits::SUPPLY_V)
+        supply_v: f64 => label("Supply").unit("V").number(limits::SUPPLY_V)
             .term("Supply", "Supply voltage of the driver. A higher voltage keeps the current up to a higher rate.")
             .from(OWN),
         /// Peak phase current of the driver.
-        peak_current_a: Option<f64> => label("Peak current")
-            .unit("A")
+        peak_current_a: Option<f64> => label("Peak current").unit("A")
             .range_text("0.001 to 1.4143 times the rated current")
             .null_means("the rated current")
             .term("Peak current", "Amplitude of the phase currents. √2 times the rated current heats the motor as much as the rated current in both phases.")
             .from(OWN),
         /// Inertia of the load at the motor shaft.
-        load_inertia_g_cm2: f64 => label("Load inertia")
-            .unit("g·cm²")
-            .number(limits::INERTIA_G_CM2)
+        load_inertia_g_cm2: f64 => label("Load inertia").unit("g·cm²").number(limits::INERTIA_G_CM2)
             .term("Load inertia", "Inertia of the load at the motor shaft. Behind a gear of n : 1 divide it by n².")
             .from(OWN),
         /// Torque of the load at the motor shaft.
-        load_torque_mn_m: f64 => label("Load torque").named("load_torque_mN_m")
-            .unit("mN·m")
+        load_torque_mn_m: f64 => label("Load torque").named("load_torque_mN_m").unit("mN·m")
             .number(limits::LOAD_TORQUE_MN_M)
             .term("Load torque", "Torque that opposes the motion, such as friction or cutting. It helps when decelerating.")
             .from(OWN),
         /// Highest rate known to work with the load.
-        working_rate_hz: Option<f64> => label("Working rate")
-            .unit("steps/s")
-            .number(limits::WORKING_RATE_HZ)
+        working_rate_hz: Option<f64> => label("Working rate").unit("steps/s").number(limits::WORKING_RATE_HZ)
             .null_means("only the torque limits it")
             .term("Working rate", "Highest rate known to work with the load, f_s. Song 2021 states 19200 Hz.")
             .from(SONG),

@@ -27,9 +27,7 @@ settings! {
     /// The segments of one channel, in order.
     pub struct ChannelSegments {
         /// First cycle of the list.
-        pub start_cycle: u64 = 1 => label("Start")
-            .unit("cycles")
-            .whole(1..=LAST_CYCLE.0)
+        pub start_cycle: u64 = 1 => label("Start").unit("cycles").whole(1..=LAST_CYCLE.0)
             .term("Start", "First cycle, counted from reset."),
         /// Count, interval, change of the interval, direction: `20 1048576000 -500 right`; or `dwell 65536000`. Times are in
         /// 1/65536 cycle.

@@ -89,21 +89,16 @@ settings! {
     /// Bytes, or one frame, sent from `start_cycle` on without pauses.
     pub struct ScriptedSend {
         /// Cycle of the first start bit.
-        pub start_cycle: u64 = 1 => label("Start")
-            .unit("cycles")
-            .whole(1..=END_OF_TIME - 1)
+        pub start_cycle: u64 = 1 => label("Start").unit("cycles").whole(1..=END_OF_TIME - 1)
             .term("Start", "First cycle, counted from reset."),
         /// Bytes in hex, sent without pauses.
         pub bytes: Hex = Hex::default() => label("Bytes")
             .term("Bytes", "Bytes on the line. Each has a start bit, eight data bits (lowest first) and a stop bit."),
         /// Instead of bytes: address, kind and body in hex, such as `ff 05` (STOP for all). CRC, COBS and delimiters are
         /// added.
-        pub frame: Option<Hex> = None => label("Frame")
-            .range_text("hex")
-            .null_means("the bytes are sent")
+        pub frame: Option<Hex> = None => label("Frame").range_text("hex").null_means("the bytes are sent")
             .term("Frame", "Address, kind and body with a CRC, between two zero bytes. COBS removes the zeros from the content, so that the end of a frame is always found.")
-            .from(OWN)
-            .when_at("line.protocol", "framed"),
+            .from(OWN).when_at("line.protocol", "framed"),
     }
 }
 
