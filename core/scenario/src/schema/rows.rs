@@ -169,7 +169,7 @@ macro_rules! last {
     };
 }
 
-/// Words for an enum's variants, each with its label in the form and its meaning in docs/scenario.md.
+/// Words for an enum's variants: `Variant = "word", "label in the form": "meaning in docs/scenario.md";`.
 macro_rules! words {
     ($($ty:ty { $($variant:ident = $word:literal, $label:literal: $meaning:expr;)* })*) => {$(
         impl $crate::schema::Typed for $ty {
