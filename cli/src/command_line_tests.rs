@@ -13,7 +13,7 @@ const LINES: &[&str] = &[
     "run {scenario} --driver {driver} --trace {trace} --vcd {vcd} --csv {csv} --packets {packets} --panel {panel} --line {line} --violations {violations}",
     "serve {scenario} --record {record} --pty {pty}",
     "faults {file} --seed 1 --write-scenario {write_scenario}",
-    "tables {scenario} --steps {steps} --out {out}",
+    "tables {scenario} --steps {steps} --check {check} --out {out}",
     "measures {scenario} --out {out}",
     "torque {scenario} --out {out}",
     "plant {scenario} --csv {csv} --vcd {vcd}",

@@ -91,12 +91,18 @@ pub(crate) const PAGES: &[Page] = &[
             ["stepscope faults --seeds 200", "stepscope faults --seed 7 --protocol raw -o seven.json"],
         )
     },
-    page(
-        "tables",
-        READ,
-        "the scenario, the step times or the command line is invalid",
-        ["stepscope tables song-2021-one-turn", "stepscope tables song-2021-one-turn --format c -o turn.h"],
-    ),
+    Page {
+        three: "--check: a step of the table differs from the plan",
+        ..page(
+            "tables",
+            READ,
+            "the scenario, the step times, the table or the command line is invalid",
+            [
+                "stepscope tables song-2021-one-turn",
+                "stepscope tables song-2021-one-turn --format c -o turn.h --with-walker",
+            ],
+        )
+    },
     page(
         "measures",
         READ,

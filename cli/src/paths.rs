@@ -20,7 +20,7 @@ pub(crate) const PATHS: &[Paths] = &[
     Paths { other: &["port"], ..row("serve", &["scenario"], &["record", "pty"]) },
     Paths { other: &["port"], ..row("send", &["scenario"], &[]) },
     row("faults", &["file"], &["write_scenario"]),
-    row("tables", &["scenario", "steps"], &["out"]),
+    row("tables", &["scenario", "steps", "check"], &["out"]),
     row("measures", &["scenario"], &["out"]),
     row("torque", &["scenario"], &["out"]),
     row("plant", &["scenario"], &["csv", "vcd"]),

@@ -1,9 +1,11 @@
 //! `stepscope tables`: step times of a scenario's axes as tables for a firmware.
 
+mod export;
+
 use crate::failure::{Failure, Numbered};
 use crate::options::{Json, Out};
 use crate::quantity::{Microseconds, whole};
-use crate::{json::Tables, output, run_recording, scenarios, steps::steps_of_table, terminal};
+use crate::{json::Tables, output, run_recording, scenarios, steps::steps_of_table};
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use std::io::{self, Write};
@@ -11,7 +13,7 @@ use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use stepscope_core::{
     inspect::export::{
-        source_code::{Language, Source, headline, is_name},
+        source_code::{Language, WALKER, check_name},
         step_tables::{scheduled, tolerance_cycles},
     },
     motion::{
@@ -29,7 +31,7 @@ pub(crate) struct Arguments {
     ///
     /// If its source is not a motion, the steps of its run are used. With --steps, only its clock and pulse times are
     /// used (default: 16 MHz and the default bus).
-    #[arg(required_unless_present = "steps")]
+    #[arg(required_unless_present_any = ["steps", "walker"])]
     scenario: Option<PathBuf>,
     /// Read step times from a CSV table, as axis 0
     ///
@@ -37,7 +39,7 @@ pub(crate) struct Arguments {
     /// the direction: 1 or right, 0 or left.
     #[arg(long, value_name = "FILE")]
     steps: Option<PathBuf>,
-    /// Form of the table (default: compressed; for a summary, all)
+    /// Form of the table (default: exact; for a summary, all)
     #[arg(long, value_enum)]
     form: Option<FormName>,
     /// Maximum error of a step in a compressed table, in us
@@ -58,7 +60,7 @@ pub(crate) struct Arguments {
     /// 8 cycles, q16: 1/32 cycle).
     #[arg(long, value_enum, default_value = "fewest")]
     search: Search,
-    /// Format of an entry: q16, q8, ticks or klipper (default: q16; for a summary, all)
+    /// Format of an entry: q16, q8, ticks or klipper (default: ticks; for a summary, all)
     ///
     /// q16 has 20 bytes and a resolution of 1/65536 cycle, q8 has 8 bytes and 1/256 cycle, ticks has 8 bytes and whole
     /// cycles. klipper is another name for ticks: the arguments of Klipper's queue_step.
@@ -67,17 +69,30 @@ pub(crate) struct Arguments {
     /// Output format
     #[arg(long, value_enum, default_value = "summary", conflicts_with = "json")]
     format: Written,
-    /// Axis, from 0 (default: 0; for a summary, all)
-    #[arg(long, value_name = "K", value_parser = whole::<usize>(0..=u64::MAX))]
-    axis: Option<usize>,
+    /// Axis, from 0, or all in one file (default: 0; for a summary, all)
+    #[arg(long, value_name = "K", value_parser = axis_choice)]
+    axis: Option<AxisChoice>,
     /// Name of the table in source code (default: axis_K)
     ///
-    /// Use up to 32 lower-case letters, digits and underscores. The first character is a letter, and at least one is a
-    /// digit or an underscore. Names that C reserves are refused. They begin with is, to, str, mem, wcs or e and a
-    /// letter, with e and a digit, or with int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_ or
-    /// tss_.
+    /// Use up to 32 lower-case letters, digits and underscores after a first letter. Keywords of C, C++ and avr-libc are
+    /// refused, and names that begin with a prefix that C reserves: is, to, str, mem, wcs or e and a letter, e and a
+    /// digit, int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_ or tss_. With --axis all the tables
+    /// are NAME_0, NAME_1 and so on.
     #[arg(long, value_parser = table_name, conflicts_with = "json")]
     name: Option<String>,
+    /// Also write stepscope_walk.h, which tables in C include, next to --out
+    #[arg(long)]
+    with_walker: bool,
+    /// Write only stepscope_walk.h
+    #[arg(long, exclusive = false, conflicts_with_all = ["scenario", "steps", "with_walker", "check", "json", "name"])]
+    walker: bool,
+    /// Compare a table with the plan, step by step; exit code 3 if it differs
+    ///
+    /// FILE is a table in C; without FILE, the table that --format c would write is compared. Each step must have its
+    /// direction, and its time within the error that the table states. The tables of a file belong to axes 0, 1 and so on,
+    /// unless --axis selects one. Nothing else is written.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["json", "with_walker"])]
+    check: Option<Option<PathBuf>>,
     #[command(flatten)]
     json: Json,
     #[command(flatten)]
@@ -120,7 +135,7 @@ enum FormName {
 }
 
 impl FormName {
-    const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
             Self::Document => "document",
@@ -162,17 +177,27 @@ fn entry_format(text: &str) -> Result<EntryFormat, String> {
 }
 
 fn table_name(text: &str) -> Result<String, String> {
-    if is_name(text) {
-        Ok(text.to_owned())
-    } else {
-        Err("not a valid name; use up to 32 lower-case letters, digits and underscores that C does not reserve, such as x_axis (`stepscope tables --help` lists the reserved names)"
-            .to_owned())
+    check_name(text).map(|()| text.to_owned())
+}
+
+#[derive(Clone, Copy)]
+enum AxisChoice {
+    One(usize),
+    All,
+}
+
+fn axis_choice(text: &str) -> Result<AxisChoice, String> {
+    if text == "all" {
+        return Ok(AxisChoice::All);
     }
+    whole::<usize>(0..=u64::MAX)(text).map(AxisChoice::One).map_err(|why| format!("{why}, or all"))
 }
 
 struct Axes {
     path: PathBuf,
-    title: String,
+    scenario: Scenario,
+    /// The text of `--steps`.
+    listed: Option<String>,
     clock_hz: u32,
     pulse: PulseTimes,
     axes: Vec<Steps>,
@@ -195,29 +220,28 @@ impl Axes {
             (ScenarioSource::Motion(_), _) | (_, Some(_)) => None,
             _ => Some(steps_of_run(&path, &scenario)?),
         };
-        let Scenario { title, clock_hz, bus, line, source, .. } = scenario;
-        let config = Config::of_segments(clock_hz, &bus, &line.serial()).map_err(of_config).map_err(wrong)?;
+        let clock_hz = scenario.clock_hz;
+        let config = Config::of_segments(clock_hz, &scenario.bus, &scenario.line.serial());
+        let pulse = PulseTimes::from(&config.map_err(of_config).map_err(wrong)?);
         let cycles = tolerance_cycles(arguments.error_us.get(), clock_hz);
         let (interval_part, search) = (arguments.interval_part, arguments.search);
         let tolerance = Tolerance { cycles, interval_part, side: arguments.window.side() };
-        let pulse = PulseTimes::from(&config);
-        let (path, title, axes) = if let Some(list) = &arguments.steps {
-            let steps = steps_of_table(&scenarios::text(list)?, clock_hz)
-                .map_err(|why| Failure::Invalid(list.clone(), why))?;
-            let title = list.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-            (list.clone(), title, vec![Steps::Listed(steps)])
+        let listed = arguments.steps.as_deref().map(scenarios::text).transpose()?;
+        let (path, axes) = if let (Some(list), Some(text)) = (&arguments.steps, &listed) {
+            let steps = steps_of_table(text, clock_hz).map_err(|why| Failure::Invalid(list.clone(), why))?;
+            (list.clone(), vec![Steps::Listed(steps)])
         } else if let Some(run_steps) = run_steps {
-            (path, title, run_steps.into_iter().map(Steps::Listed).collect())
+            (path, run_steps.into_iter().map(Steps::Listed).collect())
         } else {
-            let axes = match &source {
+            let axes = match &scenario.source {
                 ScenarioSource::Motion(Motion { axes, .. }) => axes.as_slice(),
                 _ => &[],
             };
             let plans = plan_lists([("source.motion.axes".to_owned(), axes)]);
             let plans = plans.map_err(of_motion).map_err(wrong)?;
-            (path, title, plans.into_iter().flatten().map(Steps::Planned).collect())
+            (path, plans.into_iter().flatten().map(Steps::Planned).collect())
         };
-        Ok(Self { path, title, clock_hz, pulse, axes, tolerance, search })
+        Ok(Self { path, scenario, listed, clock_hz, pulse, axes, tolerance, search })
     }
 
     fn stored(&self, steps: &Steps, form: FormName, format: EntryFormat) -> Result<Stored, Cause> {
@@ -260,13 +284,25 @@ fn steps_of_run(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledSte
 }
 
 pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.walker {
+        return output::write_new(&arguments.out.out, |out| out.write_all(WALKER.as_bytes()));
+    }
     let axes = Axes::new(arguments)?;
-    let axis = arguments.axis.unwrap_or(0);
-    let steps = axes.axes.get(axis);
-    let is_summary = arguments.format == Written::Summary;
     let count = axes.axes.len();
-    let steps = steps.ok_or_else(|| Failure::index(&axes.path, Numbered::Axes, axis, count, is_summary))?;
+    let is_summary = arguments.format == Written::Summary && arguments.check.is_none();
+    if let Some(AxisChoice::One(axis)) = arguments.axis
+        && axis >= count
+    {
+        return Err(Failure::index(&axes.path, Numbered::Axes, axis, count, is_summary));
+    }
+    if let Some(file) = &arguments.check {
+        return export::check(&axes, arguments, file.as_deref());
+    }
     let Some(language) = arguments.format.language() else {
+        if arguments.with_walker {
+            let why = "--with-walker: a summary needs no walker; use it with --format c or --format avr";
+            return Err(Failure::Option(why.to_owned()));
+        }
         return output::write_new(&arguments.out.out, |out| {
             if arguments.json.json {
                 json_tables(&axes, arguments).write(out)
@@ -275,20 +311,7 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
             }
         });
     };
-    let form = arguments.form.unwrap_or(FormName::Compressed);
-    let format = arguments.entries.unwrap_or(EntryFormat::Q16);
-    let table = axes.stored(steps, form, format).map_err(|cause| axes.failure(axis, cause))?;
-    let name = arguments.name.clone().unwrap_or_else(|| format!("axis_{axis}"));
-    let title = headline(&axes.title, axis, form.name());
-    let source = Source { name: &name, title: &title, clock_hz: axes.clock_hz, table: &table };
-    let mut text = String::new();
-    let written = source.write(language, &mut text).map_err(io::Error::other);
-    output::write_new(&arguments.out.out, |out| written.and_then(|()| out.write_all(text.as_bytes())))?;
-    for warning in source.warnings(language) {
-        // The file contains the same warning.
-        let _ = writeln!(terminal::err(), "warning: {warning}");
-    }
-    Ok(())
+    export::write(&axes, arguments, language)
 }
 
 /// The table of each axis, form and entry format, or the reason why there is none.
@@ -300,8 +323,10 @@ fn all_tables<'a>(
     let forms = forms.into_iter().filter(|form| arguments.form.is_none_or(|only| only == *form));
     let formats = EntryFormat::ALL.into_iter();
     let formats = formats.filter(|format| arguments.entries.is_none_or(|only| only == *format));
-    let chosen =
-        axes.axes.iter().enumerate().filter(|(axis, _)| arguments.axis.is_none_or(|only| only == *axis));
+    let chosen = axes.axes.iter().enumerate().filter(|(axis, _)| match arguments.axis {
+        Some(AxisChoice::One(only)) => only == *axis,
+        Some(AxisChoice::All) | None => true,
+    });
     chosen.flat_map(move |(axis, steps)| {
         let formats = formats.clone();
         forms.clone().flat_map(move |form| {

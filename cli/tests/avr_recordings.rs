@@ -102,7 +102,7 @@ fn bless(made: &Path, recording: &Path) {
 #[ignore = "builds for an AVR and runs simavr: cargo xtask test --only avr"]
 fn the_step_table_recording_matches_its_program() {
     let (folder, scenario) = (folder("step_table"), recording("step-table.json"));
-    let export = "--form exact --entries ticks --format avr --name axis_0 --out plan.h";
+    let export = "--format avr --with-walker --name plan --out plan.h";
     let options = export.split_whitespace().map(OsStr::new);
     let line: Vec<&OsStr> = [OsStr::new("tables"), scenario.as_os_str()].into_iter().chain(options).collect();
     call(&folder, "stepscope", &line);

@@ -66,9 +66,11 @@ fn compresses_steps_of_a_csv_table() {
     assert!(out.contains("a list of steps has no table"), "{out}");
     // An entry and a turn in each direction.
     assert!(count(1) > 200 && count(3) == 4, "{out}");
-    let (code, out, _) =
-        stepscope(&["tables", "--steps", "-", "--format", "c", "--name", "captured_1"], &list);
-    assert!(code == Some(0) && out.contains("static const uint64_t captured_1_interval[4]"), "{out}");
+    let options =
+        ["tables", "--steps", "-", "--form", "compressed", "--entries", "q16", "--format", "c", "--name"];
+    let (code, out, _) = stepscope(&[&options[..], &["captured"]].concat(), &list);
+    assert!(code == Some(0) && out.contains("static const stepscope_q16_entry captured_entries["), "{out}");
+    assert!(out.contains("#define CAPTURED_ENTRIES 4U\n") && out.contains(" * Steps -, CRC-32 "), "{out}");
     for (list, expected) in
         [("cycle\n100\n110\n", "step 2"), ("cycle\n1\nlater\n", "line 3: cycle: \"later\" is out of range")]
     {
@@ -95,85 +97,163 @@ fn rejects_a_table_of_too_many_steps_before_planning() {
 
 #[test]
 fn writes_tables_in_each_language() {
-    let rows: [(&[&str], &[&str]); 4] = [
+    let rows: [(&[&str], &str, &[&str]); 5] = [
         (
             &["--format", "c"],
+            "form exact, entries ticks\n",
             &[
-                "A table: axis 0, compressed step table",
-                "\n#ifndef AXIS_0_H\n#define AXIS_0_H\n",
-                "static const uint64_t axis_0_interval[",
-                " * time reaches ",
+                "/* axis_0: 20000 steps in ",
+                "tables - --form exact --entries ticks --format c --name axis_0\n",
+                "\n#ifndef AXIS_0_TABLE_H\n#define AXIS_0_TABLE_H\n",
+                "static const stepscope_ticks_entry axis_0_entries[AXIS_0_ENTRIES] = {",
+                "#define AXIS_0_MAX_ERROR_CYCLES 0UL",
+                "\nSTEPSCOPE_TICKS_TABLE(axis_0)\n",
             ],
         ),
         (
-            &["--format", "avr", "--entries", "ticks", "--axis", "1"],
-            &["static const int16_t axis_1_add[", "] PROGMEM = {", "ul, "],
+            &["--format", "avr", "--axis", "1", "--form", "compressed"],
+            "form compressed, entries ticks\n",
+            &[
+                "static const stepscope_ticks_entry axis_1_entries[AXIS_1_ENTRIES] PROGMEM = {",
+                "tables - --axis 1 --form compressed --error-us 25 --entries ticks --format avr --name axis_1\n",
+                "\nSTEPSCOPE_TICKS_TABLE_P(axis_1)\n",
+            ],
         ),
-        (&["--format", "rust", "--name", "x_axis", "--form", "exact"], &["pub static X_AXIS_COUNT: [u32; "]),
-        (&["--format", "csv", "--entries", "q8", "--form", "document"], &["interval_q8,count,add_q8\n"]),
+        (
+            &["--format", "c", "--axis", "all", "--name", "arm", "--form", "exact", "--entries", "q8"],
+            "",
+            &[
+                " * arm_1: 6400 steps in ",
+                "#ifndef ARM_TABLE_H\n",
+                "STEPSCOPE_Q8_TABLE(arm_0)\n",
+                "STEPSCOPE_Q8_TABLE(arm_1)\n",
+                "tables - --axis all --form exact --entries q8 --format c --name arm\n",
+            ],
+        ),
+        (
+            &["--format", "rust", "--name", "x_axis", "--form", "exact", "--entries", "q16"],
+            "",
+            &["pub static X_AXIS_COUNT: [u32; ", "// Made by stepscope "],
+        ),
+        (&["--format", "csv", "--entries", "q8", "--form", "document"], "", &["interval_q8,count,add_q8\n"]),
     ];
-    for (options, parts) in rows {
+    for (options, note, parts) in rows {
         let (code, out, err) = stepscope(&[&["tables", "-"], options].concat(), MOTION);
-        assert_eq!((code, err.as_str()), (Some(0), ""), "{options:?}");
+        assert_eq!((code, err.as_str()), (Some(0), note), "{options:?}");
         for part in parts {
             assert!(out.contains(part), "{options:?}: {part} in {}", &out[..out.len().min(800)]);
         }
+        assert_eq!(stepscope(&[&["tables", "-"], options].concat(), MOTION).1, out, "the same bytes");
     }
 }
 
-/// The files compile without warnings, twice in one source. The walk, in the types of the comment, ends at the time
-/// and step of the comment.
+/// The table and its walker, and the command of the table's head: run in a shell, it makes the same file.
 #[cfg(unix)]
 #[test]
-fn exported_c_compiles_and_ends_at_the_stated_time() {
-    use std::{env, fs, path::PathBuf, process::Command};
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tables-c");
-    fs::create_dir_all(folder.join("avr")).expect("a folder");
-    fs::write(folder.join("avr/pgmspace.h"), "#define PROGMEM\n").expect("a file");
-    for format in ["c", "avr"] {
-        for entries in ["q16", "q8", "ticks"] {
-            let out = folder.join("table.h").display().to_string();
-            let options =
-                ["tables", "-", "--format", format, "--entries", entries, "--name", "x_axis", "--out", &out];
-            let (code, _, err) = stepscope(&options, MOTION);
-            assert_eq!((code, err.as_str()), (Some(0), ""), "{options:?}");
-            let text = fs::read_to_string(&out).expect("a file");
-            let line =
-                text.lines().find_map(|line| line.strip_prefix(" * time reaches ")).expect("a comment");
-            let (time, rest) = line.split_once(": ").expect("a time");
-            let width = rest.split_once('(').and_then(|(_, rest)| rest.split_once(')')).expect("a type").0;
-            let main = format!(
-                r#"#include "table.h"
-#include "table.h"
-#include <stdio.h>
-int main(void) {{
-    {width} time = 0;
-    unsigned long long steps = 0;
-    for (unsigned long i = 0; i < X_AXIS_ENTRIES; i++) {{
-        uint64_t interval = x_axis_interval[i];
-        if (x_axis_count[i] == 0) time += ({width})interval;
-        for (uint32_t n = 0; n < x_axis_count[i]; n++) {{
-            time += ({width})interval;
-            steps++;
-            interval += (uint64_t)(int64_t)x_axis_add[i];
-        }}
-    }}
-    printf("%llu %d", (unsigned long long)time, steps == X_AXIS_STEPS);
-    return 0;
-}}
-"#
-            );
-            fs::write(folder.join("main.c"), main).expect("a file");
-            let compiler = env::var("CC").unwrap_or_else(|_| "cc".to_owned());
-            let compiled = Command::new(compiler)
-                .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-I.", "-o", "sum", "main.c"])
-                .current_dir(&folder)
-                .output()
-                .expect("there is a compiler of C, as Rust's linker is one");
-            assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
-            let ran = Command::new(folder.join("sum")).output().expect("it starts");
-            assert_eq!(String::from_utf8_lossy(&ran.stdout), format!("{time} 1"), "{format} {entries}");
-        }
+fn a_table_names_the_command_that_makes_it_again() {
+    use std::{
+        env, fs,
+        path::{Path, PathBuf},
+        process::Command,
+    };
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tables-again");
+    fs::create_dir_all(&folder).expect("a folder");
+    let scenario = "it's a */ turn.json";
+    fs::write(folder.join(scenario), MOTION).expect("a file");
+    let program = env!("CARGO_BIN_EXE_stepscope");
+    for options in [
+        &["--format", "c", "--axis", "all"][..],
+        &[
+            "--format",
+            "avr",
+            "--form",
+            "compressed",
+            "--error-us",
+            "12.5",
+            "--search",
+            "quick",
+            "--window",
+            "early",
+        ],
+        &["--format", "rust", "--axis", "1", "--name", "turn", "--entries", "q8"],
+    ] {
+        let out = folder.join("table.h");
+        let mut first = Command::new(program);
+        first.current_dir(&folder).args(["tables", scenario, "--out", "table.h"]).args(options);
+        let first = first.output().expect("it starts");
+        assert!(first.status.success(), "{first:?}");
+        let text = fs::read_to_string(&out).expect("a file");
+        let line = text.lines().find_map(|line| line.split_once("Made by stepscope ")).expect("its origin").1;
+        let (_, command) = line.split_once(": ").expect("a command");
+        let programs = Path::new(program).parent().expect("a folder").display();
+        let path = format!("{programs}:{}", env::var("PATH").unwrap_or_default());
+        let again =
+            Command::new("bash").args(["-c", command]).env("PATH", path).current_dir(&folder).output();
+        assert_eq!(String::from_utf8_lossy(&again.expect("a shell").stdout), text, "{command}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn the_walker_is_written_next_to_the_table_or_alone() {
+    use std::{env, fs, path::PathBuf};
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tables-walker");
+    fs::create_dir_all(&folder).expect("a folder");
+    let out = folder.join("turn.h").display().to_string();
+    let options = ["tables", "-", "--format", "c", "--with-walker", "--out"];
+    let (code, _, err) = stepscope(&[&options[..], &[&out]].concat(), MOTION);
+    assert_eq!(code, Some(0), "{err}");
+    let walker = fs::read_to_string(folder.join("stepscope_walk.h")).expect("the walker");
+    assert_eq!(stepscope(&["tables", "--walker"], ""), (Some(0), walker, String::new()));
+    let own_name = folder.join("stepscope_walk.h").display().to_string();
+    for (options, why) in [
+        (&["tables", "-", "--format", "c", "--with-walker"][..], "use --out FILE, or --walker"),
+        (
+            &["tables", "-", "--format", "rust", "--with-walker", "--out", &out],
+            "use --format c or --format avr",
+        ),
+        (&["tables", "-", "--with-walker", "--out", &out], "use it with --format c"),
+        (
+            &["tables", "-", "--format", "c", "--with-walker", "--out", &own_name],
+            "already the output of --out",
+        ),
+        (&["tables", "-", "--format", "csv", "--axis", "all"], "use --axis K"),
+        (&["tables", "-", "--walker"], "cannot be used with"),
+    ] {
+        let (code, _, err) = stepscope(options, MOTION);
+        assert!(code == Some(2) && err.contains(why), "{options:?}: {err}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_check_compares_a_table_with_its_plan() {
+    use std::{env, fs, path::PathBuf};
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tables-check");
+    fs::create_dir_all(&folder).expect("a folder");
+    let out = folder.join("both.h").display().to_string();
+    let options = ["tables", "-", "--format", "avr", "--form", "compressed", "--axis", "all", "--out", &out];
+    assert_eq!(stepscope(&options, MOTION).0, Some(0));
+    let (code, text, err) = stepscope(&["tables", "-", "--check", &out], MOTION);
+    assert_eq!((code, err.as_str(), text.lines().count()), (Some(0), "", 2), "{text}");
+    assert!(text.starts_with("axis_0, axis 0: passed: 20000 steps, largest error "), "{text}");
+    // Without a file: of the table that would be written.
+    let (code, text, _) = stepscope(&["tables", "-", "--axis", "1", "--entries", "q16", "--check"], MOTION);
+    let expected = "axis_1, axis 1: passed: 6400 steps, largest error 0 cycles, at most 0 stated\n";
+    assert_eq!((code, text.as_str()), (Some(0), expected));
+    let table = fs::read_to_string(&out).expect("a file");
+    let changed = table.replace("AXIS_1_MAX_ERROR_CYCLES ", "AXIS_1_MAX_ERROR_CYCLES 0UL //");
+    fs::write(&out, changed.replace("0UL //", "0UL\n//")).expect("a file");
+    let (code, text, err) = stepscope(&["tables", "-", "--check", &out], MOTION);
+    assert_eq!(code, Some(3), "{text}");
+    assert!(text.lines().nth(1).is_some_and(|row| row.contains("the table states at most 0")), "{text}");
+    assert!(err.contains("1 of 2 tables differ from the plan"), "{err}");
+    for (options, scenario, why) in [
+        (&["--check", &out][..], "{}", "2 tables from axis 0 on, but the scenario has 1"),
+        (&["--check", "/dev/null"], MOTION, "no table; use a file of stepscope tables"),
+    ] {
+        let (code, _, err) = stepscope(&[&["tables", "-"], options].concat(), scenario);
+        assert!(code == Some(2) && err.contains(why), "{err}");
     }
 }
 
@@ -187,7 +267,7 @@ fn warns_of_arrays_too_large_for_the_compiler() {
     let warning = err.lines().next().expect("a warning");
     assert!(
         warning
-            .starts_with("warning: axis_0_interval has 124356 bytes; avr-gcc allows 32767 bytes per array; "),
+            .starts_with("warning: axis_0_entries has 248712 bytes; avr-gcc allows 32767 bytes per array; "),
         "{err}"
     );
     assert!(
@@ -200,14 +280,20 @@ fn warns_of_arrays_too_large_for_the_compiler() {
 
 #[test]
 fn rejects_names_reserved_in_c() {
-    for name in ["string_1", "memory_x", "is_a", "total_1", "uint8_t", "e1_axis", "isr_x", "int"] {
+    for (name, why) in [
+        ("turn", ""),
+        ("is_a", ""),
+        ("string_1", "begin with \"str\""),
+        ("uint8_t", "begin with \"uint\""),
+        ("e1_axis", "begin with \"e\""),
+        ("int", "\"int\" is a keyword of C, C++ or avr-libc; use another name"),
+        ("sei", "\"sei\" is a keyword"),
+        ("Turn", "not a valid name; use up to 32 lower-case letters"),
+    ] {
         let (code, _, err) = stepscope(&["tables", "-", "--format", "c", "--name", name], MOTION);
-        let expected = if name == "is_a" { Some(0) } else { Some(2) };
-        assert_eq!(code, expected, "{name}: {err}");
+        assert_eq!(code, if why.is_empty() { Some(0) } else { Some(2) }, "{name}: {err}");
+        assert!(err.contains(why), "{name}: {err}");
     }
-    let help = stepscope(&["tables", "--help"], "").1;
-    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(help.contains("They begin with is, to, str, mem, wcs or e and a letter"), "{help}");
 }
 
 #[test]
@@ -225,7 +311,7 @@ fn explains_why_there_is_no_table() {
         ),
         (&[], r#"{ "source": { "line": {} } }"#, "source: no channel has steps"),
         (&["--error-us=-1"], MOTION, "use 0 to 1000000000"),
-        (&["--format", "rust", "--error-us", "1e8"], MOTION, "cycles of tolerance"),
+        (&["--format", "rust", "--form", "compressed", "--error-us", "1e8"], MOTION, "cycles of tolerance"),
     ];
     for (options, scenario, part) in rows {
         let (code, out, err) = stepscope(&[&["tables", "-"], options].concat(), scenario);

@@ -5,8 +5,11 @@
 use crate::moves::{CLOCK_HZ, plan};
 use std::{env, fmt::Write, fs, path::PathBuf, process::Command};
 use stepscope_core::{
-    inspect::export::source_code::{Language, Source},
+    inspect::export::source_code::{
+        Language, NamedTable, Origin, Request, Source, WALKER, WALKER_FILE, read_c,
+    },
     motion::{
+        ScheduledStep,
         mechanics::{Distance, Speed},
         moves::{Constant, Cosine, Dwell, Move, SineSegments},
         step_tables::{EntryFormat, Form, Stored, Tolerance, stored},
@@ -15,29 +18,40 @@ use stepscope_core::{
         segment::{FRACTION_BITS, PulseTimes, Segment},
         units::Cycles,
     },
+    scenario::Scenario,
 };
 
-/// Walks a table as its comment says, and prints the cycle and the way of each step.
-const WALK_C: &str = r#"
+/// Walks a table as firmware does, prints cycle and direction of each step, and checks the macros of the table.
+const WALK_C: &str = r#"#include "table.h"
+#include "table.h"
 #include <stdio.h>
 int main(void) {
-    uint64_t time = 0;
-    int right = 0;
-    for (unsigned long i = 0; i < AXIS_0_ENTRIES; i++) {
-        uint64_t interval = READ_INTERVAL(&axis_0_interval[i]);
-        uint32_t count = READ_COUNT(&axis_0_count[i]);
-        int64_t add = READ_ADD(&axis_0_add[i]);
-        if (count == 0) {
-            time += interval;
-            right = (int)add;
+    static axis_0_walk walk;
+    TIME cycles;
+    unsigned long long time = 0, steps = 0, min = ~0ULL, max = 0;
+    uint8_t event;
+    axis_0_begin(&walk);
+    while ((event = axis_0_next(&walk, &cycles)) != STEPSCOPE_END) {
+        time += cycles;
+        if ((event == STEPSCOPE_STEP || cycles != 0) && cycles < min) {
+            min = cycles;
         }
-        for (; count > 0; count--) {
-            time += interval;
-            interval += (uint64_t)add;
-            printf("%llu %d\n", (unsigned long long)(time >> AXIS_0_FRACTION_BITS), right);
+        if (cycles > max) {
+            max = cycles;
+        }
+        if (event == STEPSCOPE_STEP) {
+            steps++;
+            printf("%llu %d\n", time, walk.right);
         }
     }
-    fprintf(stderr, "%u\n", (unsigned)(AXIS_0_ENTRIES * (sizeof axis_0_interval[0] + sizeof axis_0_count[0] + sizeof axis_0_add[0])));
+    /* The end is for ever. */
+    if (axis_0_next(&walk, &cycles) != STEPSCOPE_END || cycles != 0) {
+        return 1;
+    }
+    if (steps != AXIS_0_STEPS || min != AXIS_0_MIN_CYCLES || max != AXIS_0_MAX_CYCLES) {
+        return 2;
+    }
+    fprintf(stderr, "%u\n", (unsigned)(AXIS_0_ENTRIES * sizeof axis_0_entries[0]));
     return 0;
 }
 "#;
@@ -60,8 +74,12 @@ fn main() {
 }
 "#;
 
-/// What stands for avr-libc's header on this machine: program memory is memory.
-const PGMSPACE: &str = "#define PROGMEM __attribute__((aligned(8)))\n";
+/// Stands for avr-libc's header: program memory is memory.
+const PGMSPACE: &str = r#"#include <string.h>
+#define PROGMEM __attribute__((aligned(8)))
+static inline uint16_t pgm_read_word(const void *at) { uint16_t n; memcpy(&n, at, sizeof n); return n; }
+static inline uint32_t pgm_read_dword(const void *at) { uint32_t n; memcpy(&n, at, sizeof n); return n; }
+"#;
 
 /// A motion with turns, rests and curves.
 fn table(form: Form, format: EntryFormat) -> Stored {
@@ -117,7 +135,22 @@ fn expected(table: &Stored) -> String {
 
 fn source(table: &Stored, language: Language) -> String {
     let mut text = String::new();
-    let source = Source { name: "axis_0", title: "X of a test */", clock_hz: CLOCK_HZ, table };
+    let request = Request {
+        scenario: Some(b"test.json"),
+        steps: None,
+        axis: None,
+        form: "exact",
+        error_us: 0.0,
+        interval_part: None,
+        is_early: false,
+        is_quick: false,
+        entries: table.format.name,
+        language: language.name(),
+        name: "axis_0",
+    };
+    let origin = Origin::new(&request, &Scenario::default(), None);
+    let tables = [NamedTable { name: "axis_0".into(), table }];
+    let source = Source { name: "axis_0", tables: &tables, clock_hz: CLOCK_HZ, origin: &origin };
     source.write(language, &mut text).unwrap();
     text
 }
@@ -139,6 +172,8 @@ fn compare(name: &str, mut compiler: Command, program: &PathBuf, table: &Stored)
     String::from_utf8(run.stderr).unwrap()
 }
 
+const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
+
 #[test]
 fn compiled_as_c_and_for_avr_a_table_gives_its_steps() {
     let compiler = env::var("STEPSCOPE_CC").unwrap_or_else(|_| "cc".to_owned());
@@ -151,22 +186,70 @@ fn compiled_as_c_and_for_avr_a_table_gives_its_steps() {
         for (kind, language) in [("c", Language::C), ("avr", Language::Avr)] {
             let name = format!("{name}_{kind}");
             let folder = folder(&name);
-            let read = if language == Language::Avr { "pgm_read_any" } else { "*" };
-            let mut text = source(&table, language);
-            assert_eq!(text.contains("PROGMEM"), language == Language::Avr);
-            for what in ["INTERVAL", "COUNT", "ADD"] {
-                writeln!(text, "#define READ_{what}(at) {read}(at)").unwrap();
-            }
-            text.push_str(WALK_C);
-            let header = format!("{PGMSPACE}#define pgm_read_any(at) (*(at))\n");
-            fs::write(folder.join("avr").join("pgmspace.h"), header).unwrap();
-            let (file, program) = (folder.join("table.c"), folder.join("table"));
-            fs::write(&file, text).unwrap();
+            let is_avr = language == Language::Avr;
+            let text = source(&table, language);
+            assert_eq!(text.contains("PROGMEM"), is_avr);
+            fs::write(folder.join("avr").join("pgmspace.h"), PGMSPACE).unwrap();
+            fs::write(folder.join(WALKER_FILE), WALKER).unwrap();
+            fs::write(folder.join("table.h"), text).unwrap();
+            let (file, program) = (folder.join("walk.c"), folder.join("walk"));
+            fs::write(&file, WALK_C).unwrap();
+            let time = if table.format == EntryFormat::Q16 { "-DTIME=uint64_t" } else { "-DTIME=uint32_t" };
             let mut call = Command::new(&compiler);
-            call.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-I"]).arg(&folder);
-            call.arg(&file).arg("-o").arg(&program);
+            call.args(["-std=c11", time]).args(STRICT);
+            // The walk of program memory, by the reads above.
+            call.args(is_avr.then_some("-D__AVR__"))
+                .arg("-I")
+                .arg(&folder)
+                .arg(&file)
+                .arg("-o")
+                .arg(&program);
             let bytes = compare(&name, call, &program, &table);
-            assert_eq!(bytes.trim(), table.bytes().to_string(), "{name}");
+            // 64-bit numbers are aligned here.
+            let entry = if table.format == EntryFormat::Q16 { 24 } else { 8 };
+            assert_eq!(bytes.trim(), (entry * table.entries.len()).to_string(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn the_walker_is_c99_and_cpp11() {
+    let folder = folder("walker");
+    fs::write(folder.join(WALKER_FILE), WALKER).unwrap();
+    fs::write(folder.join("table.h"), source(&tables()[0].1, Language::Avr)).unwrap();
+    fs::write(folder.join("walk.c"), WALK_C).unwrap();
+    for (compiler, language, standard) in [("cc", "c", "c99"), ("cc", "c", "c11"), ("c++", "c++", "c++11")] {
+        let mut call = Command::new(compiler);
+        call.args(["-DTIME=uint64_t", "-fsyntax-only", "-x", language])
+            .arg(format!("-std={standard}"))
+            .args(STRICT);
+        // Without __AVR__, a table for an AVR is one for this machine.
+        let output = call.arg("-I").arg(&folder).arg(folder.join("walk.c")).output();
+        let output = output.unwrap_or_else(|error| panic!("{compiler}: {error}; install gcc and g++"));
+        assert!(output.status.success(), "{standard}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[test]
+fn a_table_that_is_read_back_agrees_with_the_plan() {
+    for (name, table) in tables() {
+        let due = || {
+            let mut steps = Vec::new();
+            for line in expected(&table).lines() {
+                let (cycle, right) = line.split_once(' ').unwrap();
+                steps.push(ScheduledStep { cycle: cycle.parse().unwrap(), right: right == "1" });
+            }
+            steps
+        };
+        for language in [Language::C, Language::Avr] {
+            let [mut found]: [_; 1] = read_c(&source(&table, language)).unwrap().try_into().unwrap();
+            assert_eq!(found.entries, table.entries, "{name}");
+            // The steps of the list itself: no error at all.
+            assert_eq!(found.check(due(), CLOCK_HZ), Ok(0), "{name}");
+            let last = found.entries.last_mut().unwrap();
+            last.interval += 1 << (table.format.fraction_bits() + 20);
+            let refused = found.check(due(), CLOCK_HZ).unwrap_err();
+            assert!(refused.starts_with("step "), "{name}: {refused}");
         }
     }
 }
@@ -201,9 +284,15 @@ fn a_csv_table_has_a_row_for_each_entry_and_a_head_says_what_it_is() {
         .collect();
     assert!(lines.eq(rows.iter().map(String::as_str)));
     let head = source(&table, Language::Rust);
-    let steps = format!("{} steps in {} entries of 8 bytes (q8)", table.error.steps, table.entries.len());
-    let error = format!("Largest timing error {} cycles", table.error.max_cycles);
-    for part in [steps.as_str(), error.as_str(), "Clock: 16000000 Hz", "1/256 cycle"] {
+    let steps = format!("{} steps in {} entries of 8 bytes, ", table.error.steps, table.entries.len());
+    let error = format!("largest timing error {} cycles (", table.error.max_cycles);
+    for part in [
+        steps.as_str(),
+        error.as_str(),
+        "Clock: 16000000 Hz",
+        "1/256 cycle",
+        " % of the shortest step interval",
+    ] {
         assert!(head.contains(part), "{part}: {}", &head[..900]);
     }
 }

@@ -1,10 +1,8 @@
 /*
  * Walks a step table: a controller that makes a motion by itself, on an ATmega328P at 16 MHz.
  *
- * plan.h is the table, as `stepscope tables SCENARIO --form exact --entries ticks --format avr --name axis_0` writes it:
- *
- *   for each entry with count > 0, count times: time += interval; make a step at `time`; interval += add
- *   for each entry with count = 0:              time += interval; DIR = add
+ * plan.h is the table, as `stepscope tables SCENARIO --format avr --with-walker --name plan --out plan.h` writes it, next
+ * to stepscope_walk.h, which walks it: plan_next() has the cycles to the next step.
  *
  * Timer1 counts the processor's cycles and is never set back, so nothing is lost between two steps; the compare register
  * goes from step to step. It has 16 bits: what is farther off is reached by matches on the way, at which nothing is done.
@@ -31,47 +29,32 @@
 /* A report's bits: 16 MHz / (8 * (UBRR0 + 1)) = 500000 baud, with U2X0 */
 #define REPORT_UBRR 3
 
-#if AXIS_0_CLOCK_HZ != F_CPU || AXIS_0_FRACTION_BITS != 0
-#error "plan.h counts other cycles than Timer1: give --entries ticks and a scenario of clock_hz 16000000"
+#if PLAN_CLOCK_HZ != F_CPU
+#error "plan.h counts other cycles than Timer1: use a scenario of clock_hz 16000000"
 #endif
 
-/* Where the table is walked: the next entry, and what is left of the one before. */
-static uint16_t entry;
-static uint16_t count;
-static uint32_t interval;
-static int16_t add;
+static plan_walk walk;
+static uint8_t event;
 
-/* Cycles from the match that the timer waits for to the step. */
+/* Cycles from the match that the timer waits for to the event. */
 static uint32_t beyond;
-static uint8_t dir;
 
 static volatile int16_t position;
 static volatile uint8_t done;
 
-/* Goes on to the next step: adds the way there to `beyond`, and turns `dir` where the table does. */
-static void next_step(void)
+/* Goes on to the next event. A turn is a wait of 0 cycles, with a step behind it. */
+static void next_event(void)
 {
-    while (count == 0) {
-        if (entry == AXIS_0_ENTRIES) {
-            TIMSK1 = 0;
-            done = 1;
-            return;
-        }
-        interval = pgm_read_dword(&axis_0_interval[entry]);
-        count = pgm_read_word(&axis_0_count[entry]);
-        add = pgm_read_word(&axis_0_add[entry]);
-        entry++;
-        if (count == 0) {
-            beyond += interval;
-            dir = add ? DIR : 0;
-        }
+    event = plan_next(&walk, &beyond);
+    if (event == STEPSCOPE_WAIT && beyond == 0)
+        event = plan_next(&walk, &beyond);
+    if (event == STEPSCOPE_END) {
+        TIMSK1 = 0;
+        done = 1;
     }
-    beyond += interval;
-    interval += add;
-    count--;
 }
 
-/* Sets the next match: the step, or one on the way, from which there is more than half a turn of the timer to go. */
+/* Sets the next match: the event, or one on the way, from which there is more than half a turn of the timer to go. */
 static void set_match(void)
 {
     uint16_t way = beyond > 0xffff ? 0x8000 : beyond;
@@ -82,12 +65,14 @@ static void set_match(void)
 ISR(TIMER1_COMPA_vect)
 {
     if (beyond == 0) {
-        PORTB |= STEP;
-        position += dir ? 1 : -1;
-        next_step();
+        if (event == STEPSCOPE_STEP) {
+            PORTB |= STEP;
+            position += walk.right ? 1 : -1;
+        }
+        next_event();
         PORTB &= ~STEP;
         /* Where the table turns here, DIR changes after the fall. */
-        PORTB = dir;
+        PORTB = walk.right ? DIR : 0;
     }
     set_match();
 }
@@ -124,8 +109,9 @@ int main(void)
     UCSR0B = _BV(TXEN0);
     send('S');
 
-    next_step();
-    PORTB = dir;
+    plan_begin(&walk);
+    next_event();
+    PORTB = walk.right ? DIR : 0;
     TCCR1B = _BV(CS10);
     OCR1A = TCNT1;
     set_match();

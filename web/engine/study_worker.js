@@ -11,6 +11,7 @@ import init, {
   sine_rows,
   sine_vertices,
   step_figures,
+  step_walker,
   ValidatedScenario,
   with_motor,
 } from "../pkg-tools/stepscope_wasm.js";
@@ -18,7 +19,7 @@ import { errorMessage } from "../state/error_message.js";
 import { awaitModule, createScenarioCache, isFatal } from "./worker_common.js";
 
 /** Requests without a scenario. @type {{[method: string]: (...args: any[]) => any}} */
-const CALLS = { replay, sheets, sine_best, sine_rows, sine_vertices, step_figures, with_motor };
+const CALLS = { replay, sheets, sine_best, sine_rows, sine_vertices, step_figures, step_walker, with_motor };
 
 const { get } = createScenarioCache((json) => new ValidatedScenario(json));
 

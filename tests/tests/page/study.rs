@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use stepscope_core::{
     inspect::{
         export::{
-            source_code::{Language, Source, headline},
+            source_code::{self as export, Language, NamedTable, Origin, Source, WALKER, WALKER_FILE},
             step_tables::scheduled,
         },
         motion::{
@@ -342,6 +342,14 @@ async fn tables_are_the_cores(page: &Session, known: &Known, error_us: u64) -> R
     Ok(())
 }
 
+async fn same_file(page: &Session, language: &str, name: &str, expected: &str) -> Result<()> {
+    page.click(&format!("#study-tables [data-language={language}]")).await?;
+    page.until(&format!("window.saved['{name}']")).await?;
+    let found: String = page.js("return window.saved[arguments[0]].text();", vec![json!(name)]).await?;
+    ensure!(found == expected, "{name} has other bytes: {found}");
+    Ok(())
+}
+
 #[test]
 fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
     in_browser(|page| async move {
@@ -361,32 +369,37 @@ fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
 
         page.click("input[value='document-q8']").await?;
         let table = native(&known, "document", EntryFormat::Q8, 100)?;
-        let title = headline("A sine", 0, "document");
-        let source = Source {
-            name: "axis_0",
-            title: &title,
-            clock_hz: known.experiment.config().clock_hz(),
-            table: &table,
-        };
-        for (language, id, ending) in [
-            (Language::C, "c", ".c"),
-            (Language::Avr, "avr", "-avr.c"),
-            (Language::Rust, "rust", ".rs"),
-            (Language::Csv, "csv", ".csv"),
-        ] {
+        for (language, ending) in
+            [(Language::C, ".h"), (Language::Avr, "-avr.h"), (Language::Rust, ".rs"), (Language::Csv, ".csv")]
+        {
             let mut text = String::new();
-            source.write(language, &mut text)?;
+            let request = export::Request {
+                scenario: Some(b"a-sine.json"),
+                steps: None,
+                axis: None,
+                form: "document",
+                error_us: 100.0,
+                interval_part: None,
+                is_early: false,
+                is_quick: true,
+                entries: "q8",
+                language: language.name(),
+                name: "axis_0",
+            };
+            let scenario = decode(&known.link).map_err(|error| anyhow!("{error}"))?;
+            let origin = Origin::new(&request, &scenario, None);
+            let tables = [NamedTable { name: "axis_0".into(), table: &table }];
+            let clock_hz = known.experiment.config().clock_hz();
+            Source { name: "axis_0", tables: &tables, clock_hz, origin: &origin }
+                .write(language, &mut text)?;
             let name = format!("a-sine-axis-0-document-q8{ending}");
-            page.click(&format!("#study-tables [data-language={id}]")).await?;
-            page.until(&format!("window.saved['{name}']")).await?;
-            let found: String =
-                page.js("return window.saved[arguments[0]].text();", vec![json!(name)]).await?;
-            ensure!(found == text, "{name} has other bytes");
+            same_file(&page, language.name(), &name, &text).await?;
         }
-        // The export panel has the chosen table, too.
+        same_file(&page, "walker", WALKER_FILE, WALKER).await?;
+        // The export panel has the chosen table, too, and says that it is not exact.
         page.click("#export").await?;
         page.until("document.querySelector('#export-list [data-file]') !== null").await?;
-        page.until("document.querySelector('[data-file=\"a-sine-axis-0-document-q8-avr.c\"]')").await?;
+        page.until("document.querySelector('[data-file=\"a-sine-axis-0-document-q8-avr.h\"]')?.innerText.includes('rounded as in the paper')").await?;
 
         // A motion without a table of its own says why; of a source without axes the steps of its run are kept.
         let cosine = Known::of("{}")?;

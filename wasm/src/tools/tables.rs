@@ -2,8 +2,16 @@
 
 use crate::convert::{object, records};
 use crate::scenario::{ValidatedScenario, listed};
-use stepscope_core::{inspect::export::step_tables::StepTables, peripheral::trace::steps, sim::bus_of};
+use stepscope_core::inspect::export::source_code::WALKER;
+use stepscope_core::inspect::export::step_tables::{StepTables, Subject};
+use stepscope_core::{peripheral::trace::steps, sim::bus_of};
 use wasm_bindgen::prelude::*;
+
+/// The file `stepscope_walk.h`, which tables in C include.
+#[wasm_bindgen]
+pub fn step_walker() -> String {
+    WALKER.to_owned()
+}
 
 #[wasm_bindgen]
 impl ValidatedScenario {
@@ -22,7 +30,7 @@ impl ValidatedScenario {
         object(&self.tables(controller, axis)?.cost(form, widths, error_us))
     }
 
-    /// A table as source code; `language` is `c`, `avr`, `rust` or `csv`.
+    /// A table as source code; `language` is `c`, `avr`, `rust` or `csv`, and `file` the name of the scenario's file.
     ///
     /// # Errors
     /// As [`ValidatedScenario::step_table`], or if the table is impossible.
@@ -35,8 +43,10 @@ impl ValidatedScenario {
         widths: &str,
         error_us: f64,
         language: &str,
+        file: &str,
     ) -> Result<String, JsError> {
-        let source = self.tables(controller, axis)?.source(axis, (form, widths, error_us), language);
+        let subject = Subject { file, controller, axis };
+        let source = self.tables(controller, axis)?.source(&subject, (form, widths, error_us), language);
         source.map_err(|why| JsError::new(&why))
     }
 
@@ -71,9 +81,11 @@ impl ValidatedScenario {
         widths: &str,
         error_us: f64,
         language: &str,
+        file: &str,
     ) -> Result<String, JsError> {
         let tables = self.tables_of_run(controller, channel, run)?;
-        let source = tables.source(channel.into(), (form, widths, error_us), language);
+        let subject = Subject { file, controller, axis: channel.into() };
+        let source = tables.source(&subject, (form, widths, error_us), language);
         source.map_err(|why| JsError::new(&why))
     }
 }

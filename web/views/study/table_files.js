@@ -13,14 +13,18 @@ export const FORMS = { exact: "Exact list", document: "Table of the paper", comp
 /** Labels of the widths of an entry. @type {{[widths: string]: string}} */
 export const WIDTHS = { q16: "20 bytes, 1/65536 cycle", q8: "8 bytes, 1/256 cycle", ticks: "8 bytes, whole cycles" };
 /** Label, extension and type of the file of each language. @type {{[language: string]: [string, string, string]}} */
-export const LANGUAGES = {
-  c: ["C", ".c", "text/x-c"],
-  avr: ["C for AVR (PROGMEM)", "-avr.c", "text/x-c"],
+const LANGUAGES = {
+  c: ["C", ".h", "text/x-c"],
+  avr: ["C for AVR (PROGMEM)", "-avr.h", "text/x-c"],
   rust: ["Rust", ".rs", "text/rust"],
   csv: ["CSV", ".csv", "text/csv"],
 };
 /** The table selected in the tab; the export panel offers it, too. @type {Choice} */
-export const choice = { form: "compressed", widths: "q16", us: 25 };
+export const choice = { form: "exact", widths: "ticks", us: 25 };
+
+/** What a form loses, for the text of a button. @param {Choice} choice */
+export const loss = ({ form, us }) =>
+  form === "compressed" ? `, steps up to ${us} µs off` : form === "document" ? ", steps rounded as in the paper" : "";
 
 /** The axis or channel of the tables. @param {State} state @returns {Tabled | string | null}  As `selectedAxis`. */
 export function tabled(state) {
@@ -45,20 +49,31 @@ export function tableFiles(state, engine) {
   return subject && typeof subject !== "string" ? files(state, engine, subject) : [];
 }
 
-/** The files of a table, one for each language. @param {State} state @param {Engine} engine @param {Tabled} subject */
+/** The files of a table, one for each language, and the walker of those in C. @param {State} state @param {Engine} engine @param {Tabled} subject */
 export function files(state, engine, subject) {
   const { controller, axis } = subject;
   const { form, widths, us } = choice;
   const part = controller > 0 ? `-controller-${controller + 1}` : "";
-  return Object.entries(LANGUAGES).map(([language, [label, extension, type]]) => ({
-    name: `${baseName(state)}${part}-axis-${axis}-${form}-${widths}${extension}`,
+  const base = baseName(state);
+  const signal = new AbortController().signal;
+  const walker = {
+    name: "stepscope_walk.h",
+    type: "text/x-c",
+    button: "stepscope_walk.h",
+    label: "stepscope_walk.h: walks the tables in C",
+    language: "walker",
+    make: () => engine.distribute("step_walker", [[]], signal),
+  };
+  const tables = Object.entries(LANGUAGES).map(([language, [label, extension, type]]) => ({
+    name: `${base}${part}-axis-${axis}-${form}-${widths}${extension}`,
     type,
-    label: `${label}: axis ${axis}, ${FORMS[form].toLowerCase()}, ${WIDTHS[widths]}`,
+    button: `${label}${loss(choice)}`,
+    label: `${label}: axis ${axis}, ${FORMS[form].toLowerCase()}, ${WIDTHS[widths]}${loss(choice)}`,
     language,
     make: async () => {
       const [method, begin] = await tableRequest(engine, "step_source", subject);
-      const pieces = [[...begin, form, widths, us, language]];
-      return engine.distribute(method, pieces, new AbortController().signal);
+      return engine.distribute(method, [[...begin, form, widths, us, language, `${base}.json`]], signal);
     },
   }));
+  return [...tables, walker];
 }

@@ -7,7 +7,7 @@ import { createJob } from "./job.js";
 import { field } from "./parts.js";
 import { isAnother } from "./selected_axis.js";
 import { table } from "./table.js";
-import { choice, FORMS, files, LANGUAGES, tabled, tableRequest, WIDTHS } from "./table_files.js";
+import { choice, FORMS, files, tabled, tableRequest, WIDTHS } from "./table_files.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {{steps: number, entries: number, bytes: number, document_bytes: number | null, largest_s: number, rms_s: number, why: string | null}} Form */
@@ -70,12 +70,8 @@ export function createTables({ engine, now, panel }) {
       ),
       ...(isUnavailable
         ? []
-        : files(now(), engine, subject).map(({ name, type, language, make }) => {
-            const press = element(
-              "button",
-              { type: "button", "data-language": language, title: name },
-              LANGUAGES[language][0],
-            );
+        : files(now(), engine, subject).map(({ name, type, button, language, make }) => {
+            const press = element("button", { type: "button", "data-language": language, title: name }, button);
             press.addEventListener("click", async () => {
               setText(status, `Writing ${name}…`);
               try {

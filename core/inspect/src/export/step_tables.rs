@@ -1,6 +1,6 @@
 //! Step times of an axis or a run as firmware tables, with their cost and source code (DESIGN B8).
 
-use crate::export::source_code::{Language, Source, headline};
+use crate::export::source_code::{Language, NamedTable, Origin, Request, Source};
 use alloc::string::{String, ToString};
 use alloc::{format, vec::Vec};
 use serde::Serialize;
@@ -113,24 +113,52 @@ impl<'a> StepTables<'a> {
     /// A table (form, entry format, error in us) as source code; `language` is `c`, `avr`, `rust` or `csv`.
     pub fn source(
         &self,
-        axis: usize,
+        subject: &Subject<'_>,
         (form, widths, error_us): (&str, &str, f64),
         language: &str,
     ) -> Result<String, String> {
         let table = self.stored(form, widths, error_us)?;
-        let language = match language {
-            "avr" => Language::Avr,
-            "rust" => Language::Rust,
-            "csv" => Language::Csv,
-            _ => Language::C,
+        let all = [Language::C, Language::Avr, Language::Rust, Language::Csv];
+        let language = all.into_iter().find(|known| known.name() == language).unwrap_or(Language::C);
+        let Subject { file, controller, axis } = *subject;
+        let (name, number) = (format!("axis_{axis}"), format!("{axis}"));
+        let request = Request {
+            scenario: Some(file.as_bytes()),
+            steps: None,
+            axis: (axis > 0).then_some(number.as_str()),
+            form,
+            error_us,
+            interval_part: None,
+            is_early: false,
+            is_quick: true,
+            entries: table.format.name,
+            language: language.name(),
+            name: &name,
         };
-        let title = headline(&self.scenario.title, axis, form);
-        let (name, clock_hz) = (format!("axis_{axis}"), self.scenario.clock_hz);
+        let origin = match self.steps {
+            Steps::Planned(_) if controller == 0 => Origin::new(&request, self.scenario, None),
+            Steps::Planned(_) => {
+                Origin::of_page(&request, &format!("Axis {axis} of controller {}", controller + 1))
+            }
+            Steps::Actual(_) => Origin::of_page(&request, &format!("The steps of channel {axis}")),
+        };
+        let tables = [NamedTable { name: name.clone(), table: &table }];
+        let source =
+            Source { name: &name, tables: &tables, clock_hz: self.scenario.clock_hz, origin: &origin };
         let mut text = String::new();
-        let source = Source { name: &name, title: &title, clock_hz, table: &table };
         source.write(language, &mut text).map_err(|error| error.to_string())?;
         Ok(text)
     }
+}
+
+/// What a table of the page is of.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'s> {
+    /// Name of the scenario's file, as the page saves it.
+    pub file: &'s str,
+    pub controller: usize,
+    /// Axis, or channel without a plan.
+    pub axis: usize,
 }
 
 #[cfg(test)]
@@ -159,8 +187,18 @@ mod tests {
         }
         let none = of_run.cost("document", "q16", 25.0);
         assert!(none.steps == 3200 && none.why.is_some_and(|why| why.contains("has no table")));
-        let source = of_run.source(0, ("compressed", "q16", 25.0), "c").expect("a table");
-        assert!(source.contains("axis_0"), "{source}");
+        let subject = Subject { file: "turn.json", controller: 0, axis: 0 };
+        let source = |tables: &StepTables<'_>, subject| {
+            tables.source(&subject, ("compressed", "q16", 25.0), "c").expect("a table")
+        };
+        let of_steps = source(&of_run, subject);
+        assert!(of_steps.contains(": the page, form compressed, error 25 us, entries q16"), "{of_steps}");
+        assert!(of_steps.contains("The steps of channel 0."), "{of_steps}");
+        let of_axis = source(&of_plan, subject);
+        let command = ": stepscope tables turn.json --form compressed --error-us 25 --search quick --entries q16 --format c --name axis_0\n";
+        assert!(of_axis.contains(command), "{of_axis}");
+        let second = source(&of_plan, Subject { controller: 1, ..subject });
+        assert!(second.contains("Axis 0 of controller 2."), "{second}");
     }
 
     #[test]

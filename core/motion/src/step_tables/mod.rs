@@ -24,6 +24,7 @@ mod segments;
 mod stored;
 mod ticks;
 mod timing_error;
+mod walk;
 mod wire_bytes;
 
 pub use compressed::{Compressed, MAX_TOLERANCE, Side, Tolerance, compressed, compressed_quickly};
@@ -32,6 +33,7 @@ pub use segments::exact_segments;
 pub use stored::{Form, MAX_TABLE_STEPS, Stored, stored, stored_steps};
 pub use ticks::{TickClock, Ticks, ticks};
 pub use timing_error::TimingError;
+pub use walk::{TableEvent, TableWalk};
 
 /// Paths of problems of a list of axes.
 #[derive(Clone, Copy, Debug)]

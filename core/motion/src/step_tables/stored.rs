@@ -5,7 +5,7 @@ use crate::step_tables::compressed::{Compressed, Tolerance, compressed, compress
 use crate::step_tables::document::{document, document_bytes};
 use crate::step_tables::entry_format::{Entry, EntryFormat};
 use crate::step_tables::segments::{MAX_STEPS, exact};
-use crate::step_tables::{timing_error::TimingError, wire_bytes::wire_bytes};
+use crate::step_tables::{timing_error::TimingError, walk::TableWalk, wire_bytes::wire_bytes};
 use crate::{AxisPlan, ScheduledStep};
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::segment::{CheckedSegments, PulseTimes, SegmentList};
@@ -52,6 +52,11 @@ pub struct Stored {
 impl Stored {
     pub fn bytes(&self) -> u64 {
         self.entries.len() as u64 * self.format.bytes()
+    }
+
+    /// Walks the entries as firmware does.
+    pub fn walk(&self) -> TableWalk<'_> {
+        TableWalk::new(&self.entries, self.format)
     }
 
     /// Number of entries without steps: changes of direction and waits, which are no `queue_step` of Klipper.
