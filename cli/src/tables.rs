@@ -84,7 +84,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     with_walker: bool,
     /// Write only stepscope_walk.h
-    #[arg(long, exclusive = false, conflicts_with_all = ["scenario", "steps", "with_walker", "check", "json", "name"])]
+    #[arg(long, conflicts_with_all = ["scenario", "steps", "with_walker", "check", "json", "name"])]
     walker: bool,
     /// Compare a table with the plan, step by step; exit code 3 if it differs
     ///
@@ -290,9 +290,11 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     let axes = Axes::new(arguments)?;
     let count = axes.axes.len();
     let is_summary = arguments.format == Written::Summary && arguments.check.is_none();
-    if let Some(AxisChoice::One(axis)) = arguments.axis
-        && axis >= count
-    {
+    let axis = match arguments.axis {
+        Some(AxisChoice::One(axis)) => axis,
+        Some(AxisChoice::All) | None => 0,
+    };
+    if axis >= count {
         return Err(Failure::index(&axes.path, Numbered::Axes, axis, count, is_summary));
     }
     if let Some(file) = &arguments.check {

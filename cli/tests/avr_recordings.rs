@@ -112,6 +112,40 @@ fn the_step_table_recording_matches_its_program() {
     compare(&edges(&dump), &edges(&recording), &folder);
 }
 
+/// Rules of MISRA C:2012 that `stepscope_walk.h` lists as deviations.
+const DEVIATIONS: [&str; 4] =
+    ["misra-c2012-2.5]", "misra-c2012-2.3]", "misra-c2012-8.9]", "misra-c2012-20.7]"];
+
+#[test]
+#[ignore = "builds for an AVR and calls cppcheck: cargo xtask test --only avr"]
+fn exported_tables_compile_for_an_avr_and_pass_cppcheck() {
+    let (folder, scenario) = (folder("tables"), recording("step-table.json"));
+    for (entries, time) in [("ticks", "uint32_t"), ("q8", "uint32_t"), ("q16", "uint64_t")] {
+        let export = format!("--entries {entries} --format avr --with-walker --name plan --out table.h");
+        let options = export.split_whitespace().map(OsStr::new);
+        let line = [OsStr::new("tables"), scenario.as_os_str()].into_iter().chain(options);
+        call(&folder, "stepscope", &line.collect::<Vec<_>>());
+        let program = format!(
+            "#include \"table.h\"\nint main(void)\n{{\n    plan_walk walk;\n    {time} cycles;\n    plan_begin(&walk);\n    \
+             while (plan_next(&walk, &cycles) != STEPSCOPE_END) {{}}\n    return (int)walk.right;\n}}\n"
+        );
+        fs::write(folder.join("walk.c"), program).expect("a file");
+        let strict = "-mmcu=atmega328p -std=gnu99 -Os -Wall -Wextra -Wpedantic -Wconversion -Werror -c -o walk.o walk.c";
+        call(&folder, "avr-gcc", &strict.split(' ').collect::<Vec<_>>());
+        let check = "--enable=all --std=c99 --quiet --suppress=missingIncludeSystem -UPROGMEM walk.c";
+        let clean = format!("--error-exitcode=1 {check}");
+        assert_eq!(call(&folder, "cppcheck", &clean.split(' ').collect::<Vec<_>>()), "", "{entries}");
+        let misra = format!("--addon=misra {check}");
+        let found = call(&folder, "cppcheck", &misra.split(' ').collect::<Vec<_>>());
+        assert!(found.contains(DEVIATIONS[0]), "the add-on has run: {found}");
+        let ours =
+            found.lines().filter(|line| line.starts_with("stepscope_walk.h") || line.starts_with("table.h"));
+        for line in ours.filter(|line| line.contains("misra-")) {
+            assert!(DEVIATIONS.iter().any(|rule| line.ends_with(rule)), "{entries}: {line}");
+        }
+    }
+}
+
 /// The packets and pace of the scenario's host, as `packets.h`.
 fn packets_of(scenario: &str) -> String {
     let scenario: Json = serde_json::from_str(scenario).expect("a scenario");

@@ -7,8 +7,9 @@ use anyhow::{Result, bail};
 
 use crate::{apt, judges, run, toolchain};
 
-const PROGRAMS: [&str; 4] = ["avr-gcc", "simavr", "sigrok-cli", "cc"];
-const PACKAGES: [&str; 6] = ["gcc-avr", "avr-libc", "simavr", "libsimavr-dev", "sigrok-cli", "gcc"];
+const PROGRAMS: [&str; 5] = ["avr-gcc", "simavr", "sigrok-cli", "cppcheck", "cc"];
+const PACKAGES: [&str; 7] =
+    ["gcc-avr", "avr-libc", "simavr", "libsimavr-dev", "sigrok-cli", "cppcheck", "gcc"];
 const HEADERS: [&str; 2] = ["simavr/avr/avr_mcu_section.h", "simavr/sim_avr.h"];
 const INCLUDES: [&str; 2] = ["/usr/include", "/usr/local/include"];
 

@@ -29,9 +29,10 @@
  *       if (walk.right) { PORTB |= DIR; } else { PORTB &= ~DIR; }
  *   }
  *
- * MISRA C:2012: cppcheck's add-on reports rules 2.5, 8.9 and 20.7 here and in a table. They are deviations, as are
+ * MISRA C:2012: cppcheck's add-on reports rules 2.3, 2.5, 8.9 and 20.7 here and in a table. They are deviations, as are
  * directive 4.9 and rule 20.10: STEPSCOPE_TABLE makes a type and two functions of a table's name (so its parameters are
- * operands of ## and take no parentheses), an array has its two functions as only users, and no file uses all macros.
+ * operands of ## and take no parentheses), an array has its functions as only users, and no file uses all types and
+ * macros.
  */
 #ifndef STEPSCOPE_WALK_H
 #define STEPSCOPE_WALK_H

@@ -88,7 +88,7 @@ fn entries(code: &str, name: &str, format: EntryFormat) -> Result<Vec<Entry>, St
         let mut cells = row.split(',').map(str::trim);
         let [interval, count, add] =
             [cells.next(), cells.next(), cells.next()].map(Option::unwrap_or_default);
-        let entry = || {
+        let mut parse = || {
             let (interval, count, add) = (number(interval)?, number(count)?, signed(add)?);
             let fits = interval <= format.max_interval()
                 && count <= format.max_count()
@@ -96,7 +96,7 @@ fn entries(code: &str, name: &str, format: EntryFormat) -> Result<Vec<Entry>, St
             (fits && cells.next().is_none()).then_some(Entry { interval, count, add })
         };
         let index = entries.len();
-        let entry = entry().ok_or_else(|| {
+        let entry = parse().ok_or_else(|| {
             format!("entry {index}: {{{row}}} is no entry of format {}; export the table again", format.name)
         })?;
         entries.push(entry);
