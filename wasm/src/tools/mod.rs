@@ -18,4 +18,5 @@ pub use measures::step_figures;
 pub use motors::{sheets, with_motor};
 pub use replay::replay;
 pub use sine::{sine_best, sine_rows, sine_vertices};
+pub use tables::step_walker;
 pub use trace_file::TraceFile;
