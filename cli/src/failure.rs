@@ -53,7 +53,6 @@ pub(crate) enum Numbered {
 }
 
 impl Numbered {
-    /// Option, singular and plural.
     const fn names(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Controllers => ("--controller", "controller", "controllers"),

@@ -198,41 +198,41 @@ fn write(path: &Path, scenarios: &[Scenario], is_file: bool, out: Option<&Path>)
     })
 }
 
-/// Name, whether it applies to raw lines, value.
-type Row = (&'static str, bool, fn(&Tally) -> u64);
+/// Name in JSON, text, whether it applies to raw lines, value.
+type Row = (&'static str, &'static str, bool, fn(&Tally) -> u64);
 const ROWS: &[Row] = &[
-    ("seeds", true, |tally| tally.seeds),
-    ("seeds with errors", true, |tally| tally.wrong_seeds),
-    ("frames or packets sent", true, |tally| tally.frames),
-    ("  repeated", false, |tally| tally.repeated),
-    ("  rejected: CRC", false, |tally| tally.bad_check),
-    ("  rejected: SHORT_PACKET", true, |tally| tally.short),
-    ("  rejected: OVERLONG", false, |tally| tally.overlong),
-    ("  refused", true, |tally| tally.refused),
-    ("  acknowledged again", false, |tally| tally.acknowledged_again),
-    ("bytes lost: FRAMING", true, |tally| tally.framing),
-    ("replies sent", false, |tally| tally.replies),
-    ("  lost or damaged", false, |tally| tally.replies_lost),
-    ("crashes of the host", false, |tally| tally.crashes),
-    ("ticks commanded", true, |tally| tally.commanded),
-    ("  executed", true, |tally| tally.executed),
-    ("  not reached: host gave up", false, |tally| tally.unreached),
-    ("  missing", true, |tally| tally.missing),
-    ("  wrong", true, |tally| tally.wrong),
-    ("  duplicated or not commanded", true, |tally| tally.duplicated),
-    ("wrong steps", true, |tally| tally.wrong_steps),
-    ("steps of missing ticks", true, |tally| tally.missing_steps),
-    ("error of final positions, steps", true, |tally| tally.position_error),
-    ("given up: no reply", false, |tally| tally.given_up),
-    ("  although bit rates differ by up to 4 %", false, |tally| tally.given_up_in_reach),
-    ("given up: other reasons", false, |tally| tally.stuck),
+    ("seeds", "seeds", true, |tally| tally.seeds),
+    ("seeds_with_errors", "seeds with errors", true, |tally| tally.wrong_seeds),
+    ("sent", "frames or packets sent", true, |tally| tally.frames),
+    ("repeated", "  repeated", false, |tally| tally.repeated),
+    ("rejected_crc", "  rejected: CRC", false, |tally| tally.bad_check),
+    ("rejected_short_packet", "  rejected: SHORT_PACKET", true, |tally| tally.short),
+    ("rejected_overlong", "  rejected: OVERLONG", false, |tally| tally.overlong),
+    ("refused", "  refused", true, |tally| tally.refused),
+    ("acknowledged_again", "  acknowledged again", false, |tally| tally.acknowledged_again),
+    ("bytes_lost_framing", "bytes lost: FRAMING", true, |tally| tally.framing),
+    ("replies", "replies sent", false, |tally| tally.replies),
+    ("replies_lost", "  lost or damaged", false, |tally| tally.replies_lost),
+    ("host_crashes", "crashes of the host", false, |tally| tally.crashes),
+    ("ticks_commanded", "ticks commanded", true, |tally| tally.commanded),
+    ("ticks_executed", "  executed", true, |tally| tally.executed),
+    ("ticks_not_reached", "  not reached: host gave up", false, |tally| tally.unreached),
+    ("ticks_missing", "  missing", true, |tally| tally.missing),
+    ("ticks_wrong", "  wrong", true, |tally| tally.wrong),
+    ("ticks_duplicated", "  duplicated or not commanded", true, |tally| tally.duplicated),
+    ("wrong_steps", "wrong steps", true, |tally| tally.wrong_steps),
+    ("missing_steps", "steps of missing ticks", true, |tally| tally.missing_steps),
+    ("position_error_steps", "error of final positions, steps", true, |tally| tally.position_error),
+    ("given_up_no_reply", "given up: no reply", false, |tally| tally.given_up),
+    ("given_up_in_reach", "  although bit rates differ by up to 4 %", false, |tally| tally.given_up_in_reach),
+    ("given_up_other", "given up: other reasons", false, |tally| tally.stuck),
 ];
 
 fn tables(reports: &[(&str, Report)]) -> Tables {
     let counts = reports.iter().flat_map(|(protocol, report)| {
-        let shown = ROWS.iter().filter(move |(_, everywhere, _)| *everywhere || *protocol == FRAMED);
-        shown.map(move |(name, _, value)| {
-            json!({ "protocol": protocol, "count": name.trim(), "value": value(&report.tally) })
+        let shown = ROWS.iter().filter(move |(_, _, everywhere, _)| *everywhere || *protocol == FRAMED);
+        shown.map(move |(name, _, _, value)| {
+            json!({ "protocol": protocol, "count": name, "value": value(&report.tally) })
         })
     });
     let wrong = reports.iter().flat_map(|(protocol, report)| {
@@ -246,8 +246,8 @@ fn print(reports: &[(&str, Report)]) -> io::Result<()> {
     write!(out, "{:42}", "")?;
     reports.iter().try_for_each(|(name, _)| write!(out, "{name:>14}"))?;
     writeln!(out)?;
-    for (name, everywhere, value) in ROWS {
-        write!(out, "{name:42}")?;
+    for (_, text, everywhere, value) in ROWS {
+        write!(out, "{text:42}")?;
         for (protocol, report) in reports {
             let shown = *everywhere || *protocol == FRAMED;
             let value = if shown { value(&report.tally).to_string() } else { "-".to_owned() };

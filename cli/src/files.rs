@@ -132,7 +132,6 @@ impl Output for Packets {
 
 pub(crate) type Files = Vec<(PathBuf, Box<dyn Output>)>;
 
-/// What is recorded of one controller during a run.
 #[derive(Default)]
 pub(crate) struct ControllerOutputs {
     pub(crate) digest: Digest,

@@ -35,8 +35,7 @@ fn handle_signal() {
     if WATCHED.load(Ordering::SeqCst) && !is_forced {
         return;
     }
-    // Locked until the process ends, so that no file is renamed meanwhile. Once the files are renamed, the command ends
-    // by itself.
+    // Locked until the process ends, so that no file is renamed meanwhile. After the renames the command ends by itself.
     let committed = output::committed();
     if *committed && !is_forced {
         return;

@@ -1,5 +1,4 @@
-//! The real-time side of `stepscope serve` and `stepscope send` (LIVE H1 to H3): ports, clock, Ctrl-C. The core
-//! decides what is sent in which cycle.
+//! The real-time side of `serve` and `send` (LIVE H1 to H3); the core decides what is sent in which cycle.
 
 mod buttons;
 mod closed_peer;

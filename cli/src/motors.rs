@@ -72,7 +72,7 @@ fn check_plant(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
 }
 
 impl MotorReplacement {
-    /// The scenario with these motors, which must have a plant; `-` is standard input.
+    /// The scenario must have a plant; `-` is standard input.
     pub(crate) fn validated(&self, path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
         if self.motor.is_none() && self.motor_driver.is_none() {
             return scenarios::validated_after(path, |scenario| check_plant(path, scenario));

@@ -118,9 +118,7 @@ mod identity {
 
 impl Outputs {
     /// Each output has the name of its option.
-    ///
-    /// # Errors
-    /// [`Failure::Option`] if an output is another output or an input.
+    /// Errors: [`Failure::Option`] if an output is another output or an input.
     pub(crate) fn check<'p>(
         inputs: impl IntoIterator<Item = &'p (impl AsRef<Path> + ?Sized + 'p)>,
         outputs: impl IntoIterator<Item = (&'p str, &'p Path)>,

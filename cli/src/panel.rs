@@ -1,5 +1,4 @@
-//! Output files for stand-alone controllers: panel records, and tables and dumps with states and inputs next to the
-//! signals.
+//! Output files for stand-alone controllers: panel records, and tables and dumps with states and inputs.
 
 use crate::{files::Output, output::Out};
 use std::io::{self, Write};

@@ -58,10 +58,7 @@ pub(crate) fn of(command: &str) -> Option<&'static Paths> {
     PATHS.iter().find(|paths| paths.command == command)
 }
 
-/// Checks the paths of a command line.
-///
-/// # Errors
-/// [`Failure::Option`] if an output is an input or another output, or if two inputs are standard input.
+/// Errors: [`Failure::Option`] if an output is an input or another output, or if two inputs are standard input.
 pub(crate) fn check(matches: &ArgMatches) -> Result<(), Failure> {
     let (mut name, mut inner) = (String::new(), matches);
     while let Some((command, arguments)) = inner.subcommand() {

@@ -123,7 +123,6 @@ fn memories(setup: &CheckedSetup) -> Vec<MemoryCase> {
     cases
 }
 
-/// Cuts the power in parallel parts, and counts the outcomes.
 fn count_outcomes(
     setup: &CheckedSetup,
     end: Instant,

@@ -57,13 +57,12 @@ impl Progress {
         self.done += 1;
     }
 
-    /// `done` of `all` in the current part.
     pub(crate) fn update(&mut self, done: u64, all: u64) {
         let all = all.max(1);
-        let whole = u128::from(self.done.min(self.parts)) * u128::from(all) + u128::from(done.min(all));
+        let done_units = u128::from(self.done.min(self.parts)) * u128::from(all) + u128::from(done.min(all));
+        let total_units = u128::from(self.parts) * u128::from(all);
         let of = |length: u64| {
-            let share = whole * u128::from(length) / (u128::from(self.parts) * u128::from(all));
-            u64::try_from(share).unwrap_or(length).min(length)
+            u64::try_from(done_units * u128::from(length) / total_units).unwrap_or(length).min(length)
         };
         match self.style {
             Style::Hidden => {}
@@ -89,8 +88,10 @@ impl Progress {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
         }
-        if self.style != Style::Lines && (self.style == Style::Hidden || took < DELAY && written.is_empty()) {
-            return;
+        match self.style {
+            Style::Hidden => return,
+            Style::Bar if took < DELAY && written.is_empty() => return,
+            Style::Bar | Style::Lines => {}
         }
         let files = Files(written);
         let _ = writeln!(terminal::err(), "{}: {done} in {:.1} s{files}", self.command, took.as_secs_f64());

@@ -137,7 +137,6 @@ pub(crate) fn sine(command: &Command) -> Result<(), Failure> {
     })
 }
 
-/// A sine of a scenario, with its axis and the number of its move.
 struct ScenarioSine {
     axis: usize,
     index: usize,

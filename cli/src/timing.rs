@@ -273,8 +273,7 @@ fn print(check: &TimingCheck, unit: TimeUnit) -> io::Result<()> {
     }
 }
 
-/// A time, printed in ns with up to three decimal places. Times are rounded down to whole picoseconds, so that sums
-/// agree and negative slack stays negative.
+/// Printed in ns with three decimal places. Rounded down, so that sums agree and negative slack stays negative.
 struct Picoseconds(i128);
 
 /// The unit of measured times: a cycle, or a tick of a recording if no clock has whole cycles.

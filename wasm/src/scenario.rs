@@ -1,10 +1,9 @@
-//! A scenario that is read, validated and planned once.
+//! A scenario that is read, validated and planned once, for runs, links and the study.
 
 use stepscope_core::sim::{self, Experiment};
 use stepscope_core::{peripheral::config::Config, scenario::Problem};
 use wasm_bindgen::prelude::*;
 
-/// A scenario that is read, validated and planned once, for runs, links and the study.
 #[wasm_bindgen]
 pub struct ValidatedScenario(pub(crate) sim::ValidatedScenario);
 
@@ -19,10 +18,7 @@ impl ValidatedScenario {
 
 #[cfg(feature = "tools")]
 impl ValidatedScenario {
-    /// Axis `axis` of controller `controller`.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such axis.
+    /// Axis `axis` of controller `controller`. Errors: if the scenario has problems, or no such axis.
     pub(crate) fn axis(&self, controller: usize, axis: usize) -> Result<sim::SelectedAxis<'_>, JsError> {
         self.0.experiment().map_err(listed)?;
         self.0.axis(controller, axis).ok_or_else(|| JsError::new("unknown axis; select one with motion"))

@@ -26,7 +26,7 @@ async function load() {
 export async function fillCard(card, word, isWanted) {
   const name = word.dataset.term ?? "";
   if (termOf(name)) await loadExplanations();
-  const own = termOf(name);
+  const own = termOf(name); // now with its explanation
   const texts = own ? null : await load();
   if (!isWanted()) return;
   const view = VIEWS.find((each) => name === `view:${each.name}`);

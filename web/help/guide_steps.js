@@ -83,6 +83,7 @@ function createGuide({ dispatch, now }) {
     // The target must be visible.
     const { form, folded, largest } = now().panes;
     if (largest !== null || form === 0 || folded.length > 0) {
+      // A width of 0 is folded; null is the default width.
       dispatch({ type: "pane", panes: { largest: null, folded: [], form: form || null } });
       requestAnimationFrame(() => {
         if (current === step) place();
@@ -140,9 +141,9 @@ function createGuide({ dispatch, now }) {
       Math.max(GAP_PX, Math.min(at, max - GAP_PX));
     // Left of the views, right of the form, or below the header.
     const left = box.width > clientWidth / 3 ? box.left - width - GAP_PX : box.right + GAP_PX;
-    const hasTallWindow = box.height > height / 2;
-    panel.style.left = `${within(hasTallWindow ? left : box.left, clientWidth - width)}px`;
-    panel.style.top = `${within(hasTallWindow ? box.top : below, clientHeight - height)}px`;
+    const isTall = box.height > height / 2;
+    panel.style.left = `${within(isTall ? left : box.left, clientWidth - width)}px`;
+    panel.style.top = `${within(isTall ? box.top : below, clientHeight - height)}px`;
   }
 
   function end() {

@@ -135,8 +135,8 @@ export function picture(chart, width, height) {
 /** A chart as the text of an SVG element at a position. @param {Chart} chart @param {number} x @param {number} y @param {number} width @param {number} height */
 export function drawing(chart, x, y, width, height) {
   const [w, h] = [width * CHART_RATIO, height * CHART_RATIO];
-  const inner = chart_svg(w, h, spec(chart)).replace(/^[\s\S]*?<svg[^>]*>/, "");
-  return `<svg x="${x}" y="${y}" width="${width}" height="${height}" viewBox="0 0 ${w} ${h}">${inner}`;
+  const opening = `<svg x="${x}" y="${y}" width="${width}" height="${height}" viewBox="0 0 ${w} ${h}">`;
+  return chart_svg(w, h, spec(chart)).replace(/^[\s\S]*?<svg[^>]*>/, opening);
 }
 
 /** Calls back when an element's size changes or the theme does. @param {Element} element @param {() => void} redraw */

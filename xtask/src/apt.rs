@@ -10,7 +10,7 @@ use crate::run;
 /// apt allows one installation at a time, but two steps may run in parallel.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
 
-/// Installs `packages`. An error without root or apt-get.
+/// Installs `packages`. Errors: the process is not root, or there is no apt-get.
 pub(crate) async fn install(packages: &[&str]) -> Result<()> {
     let names = packages.join(" and ");
     let apt = match which::which("apt-get") {

@@ -1,5 +1,4 @@
-//! Builds the programs in `firmware/avr` and runs them in simavr: they make the recordings in `core/capture/recordings` again
-//! and answer `stepscope send`. The tests are in `cli`.
+//! Builds `firmware/avr` and runs it in simavr for tests in `cli`: recordings, and replies to `stepscope send`.
 
 use std::path::Path;
 

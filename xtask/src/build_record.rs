@@ -22,7 +22,6 @@ pub(crate) static PROGRAM: LazyLock<Option<u64>> = LazyLock::new(|| {
     Some(XxHash64::oneshot(0, &program))
 });
 
-/// A built folder and its inputs.
 pub(crate) struct BuildRecord<'a> {
     folder: &'a Path,
     sources: &'a [&'a str],
@@ -51,7 +50,6 @@ impl<'a> BuildRecord<'a> {
         Ok(Self { folder, sources, options, file, inputs })
     }
 
-    /// Whether the folder and its inputs are those of the saved record.
     pub(crate) fn is_current(&self) -> Result<bool> {
         let Ok(saved) = fs::read_to_string(&self.file) else { return Ok(false) };
         Ok(self.folder.is_dir() && saved == self.text()?)

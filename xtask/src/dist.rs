@@ -72,7 +72,6 @@ async fn commit() -> Option<String> {
     Some(format!("{}{}", name.trim(), if changes.is_empty() { "" } else { "+" }))
 }
 
-/// The sources that reference others: pages, manifest and service worker.
 struct Site {
     texts: BTreeMap<String, String>,
     headers: String,
@@ -128,7 +127,6 @@ impl Site {
         texts.map(|(name, text)| (name.as_str(), text.as_str()))
     }
 
-    /// The files that pages reference, except other pages.
     fn sources(&self) -> BTreeSet<&str> {
         self.pages().flat_map(|(_, text)| references(text)).filter(|file| !is_page(file)).collect()
     }

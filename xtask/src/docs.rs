@@ -53,7 +53,6 @@ struct Page {
     files: BTreeSet<PathBuf>,
 }
 
-/// The target of a link.
 enum Target {
     External,
     Page(String),

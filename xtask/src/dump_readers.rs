@@ -1,5 +1,4 @@
-//! Exchanges files with GTKWave's and sigrok's programs: a test of `cli` makes them read its value change dumps, a test of
-//! `core/capture` reads theirs.
+//! Tests of `cli` and `core/capture` exchange value change dumps with GTKWave's and sigrok's programs.
 
 use anyhow::Result;
 

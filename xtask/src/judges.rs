@@ -1,5 +1,4 @@
-//! Tests the live commands with independent software: Python's packages for serial ports, COBS and CRC-32C, and
-//! socat. The tests are in `cli`.
+//! Tests the live commands with Python's packages for serial ports, COBS and CRC-32C, and with socat, in `cli`.
 
 use std::path::{Path, PathBuf};
 

@@ -176,8 +176,7 @@ fn root() -> &'static Path {
     here.parent().unwrap_or(here)
 }
 
-/// This program's path, for tests that start it. Read first, because a step may replace the program by a new build; then
-/// the system would report a missing file.
+/// This program's path, for tests that start it. Read first, because a step may replace the program's file.
 static THIS_PROGRAM: LazyLock<io::Result<PathBuf>> = LazyLock::new(env::current_exe);
 
 async fn perform(task: Task) -> Result<()> {

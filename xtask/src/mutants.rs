@@ -125,8 +125,7 @@ fn drawn(mut all: Vec<String>, sample: usize, seed: u64) -> BTreeSet<String> {
     all.into_iter().take(sample).collect()
 }
 
-/// Marks mutants as caught, so that `--iterate` skips them. cargo-mutants' own filters by name let some kinds
-/// through.
+/// Marks mutants as caught, so that `--iterate` skips them; cargo-mutants' filters by name let some kinds through.
 fn skip_mutants<'a>(results: &Path, names: impl Iterator<Item = &'a String>) -> Result<()> {
     let problem = || format!("{} can't be replaced", results.display());
     if results.exists() {

@@ -1,5 +1,4 @@
-//! Packs and builds the packages as users get them: the library crates by cargo, the npm package in a Node program.
-//! Publishes nothing.
+//! Packs and builds the library crates and the npm package as users get them; publishes nothing.
 
 use std::env;
 use std::fs;
@@ -67,8 +66,7 @@ fn cargo_home() -> Result<PathBuf> {
     }
 }
 
-/// Our crates among those unpacked in `sources`. A registry in a folder has no host, so its folder's name begins with
-/// a hyphen.
+/// Our crates in `sources`. A registry in a folder has no host, so its folder's name begins with a hyphen.
 fn unpacked(sources: &Path) -> Vec<PathBuf> {
     let registries = fs::read_dir(sources).into_iter().flatten().flatten();
     let own = registries.filter(|registry| registry.file_name().to_string_lossy().starts_with('-'));

@@ -32,8 +32,7 @@ pub(crate) async fn shipped(optimize: Optimize) -> Result<Parts> {
     dist::make(&root().join("web"), &dist::folder()).await
 }
 
-/// The wasm modules of the page: the folder of each in `web`, and its feature of the crate. The second one loads in the
-/// background.
+/// Each wasm module's folder in `web` and its feature of the crate; the second one loads in the background.
 pub(crate) const MODULES: [(&str, &str); 2] = [("pkg", "view"), ("pkg-tools", "tools")];
 
 pub(crate) async fn build(optimize: Optimize) -> Result<()> {
@@ -70,7 +69,6 @@ async fn build_record<'a>(tools: &WasmTools, package: &'a Path, options: &[&str]
     BuildRecord::of(package, &SOURCES, &[&tools.identity(), options].concat()).await
 }
 
-/// Runs wasm-pack on the crate in `folder`, with the output in `package`.
 pub(crate) async fn build_wasm(
     tools: &WasmTools,
     mut command: tokio::process::Command,
@@ -125,7 +123,6 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// All files of the page, each once.
     fn total(&self) -> Sizes {
         let parts = self.later.iter().map(|(_, part)| part).chain([&self.opening, &self.offline]);
         let files: BTreeMap<_, _> =

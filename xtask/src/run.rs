@@ -1,5 +1,4 @@
-//! Child processes without standard input, each in its own process group. The whole group ends with the child, so that no
-//! browser or driver keeps running.
+//! Child processes, each in its own process group, which ends with the child so that no browser keeps running.
 
 use std::io::{self, PipeReader, Read, Write};
 use std::path::Path;
@@ -33,7 +32,6 @@ impl Group {
         line.context("no output within ten minutes")??.context("no output")
     }
 
-    /// Waits for the end; an error if the child fails.
     pub(crate) async fn wait(&mut self) -> Result<()> {
         let status = self.0.wait().await.context("waiting for the child failed")?;
         if !status.success() {

@@ -1,5 +1,4 @@
-//! Installs missing tools, each version once per user into the user cache. A tool of the right version on PATH is used
-//! instead.
+//! Installs missing tools of fixed versions into the user cache; a tool of that version on PATH is used instead.
 
 use std::env;
 use std::ffi::OsString;
@@ -125,7 +124,6 @@ pub(crate) async fn geckodriver() -> Result<PathBuf> {
     ready(&cache()?, &[tool]).await?.pop().context("geckodriver is missing")
 }
 
-/// The programs of these tools; installs those that are missing.
 async fn ready(cache: &Path, tools: &[Tool]) -> Result<Vec<PathBuf>> {
     let mut programs = Vec::new();
     let mut installed = false;

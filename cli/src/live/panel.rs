@@ -1,5 +1,4 @@
-//! The panel of served stand-alone controllers: converts lines to presses after the model's current cycle (LIVE H1,
-//! H2).
+//! The panel of served controllers: converts lines to presses after the model's current cycle (LIVE H1, H2).
 
 use super::buttons::{HELP, Line};
 use super::status_line::StatusLine;
@@ -16,7 +15,7 @@ pub(crate) struct Panel {
     incomplete: Vec<u8>,
     lines: VecDeque<Vec<u8>>,
     /// A `wait` line delays the lines after it until this cycle.
-    pub(crate) waits: Option<Instant>,
+    pub(crate) wait_until: Option<Instant>,
     /// Reported presses without effect, per controller.
     reported: Vec<usize>,
 }
@@ -46,14 +45,14 @@ impl Panel {
     }
 
     pub(crate) fn is_done(&self) -> bool {
-        self.lines.is_empty() && self.waits.is_none()
+        self.lines.is_empty() && self.wait_until.is_none()
     }
 
     pub(crate) fn execute(&mut self, session: &mut Session, status: &mut StatusLine) {
-        if self.waits.is_some_and(|until| session.now() >= until) {
-            self.waits = None;
+        if self.wait_until.is_some_and(|until| session.now() >= until) {
+            self.wait_until = None;
         }
-        while self.waits.is_none() {
+        while self.wait_until.is_none() {
             let Some(line) = self.lines.pop_front() else { break };
             match parse(&line) {
                 Ok(line) => self.apply(line, session, status),
@@ -69,7 +68,7 @@ impl Panel {
             Line::Empty => return,
             Line::Help => return status.note(&help()),
             Line::Wait(span) => {
-                self.waits = Some(session.now() + span.cycles(clock_hz));
+                self.wait_until = Some(session.now() + span.cycles(clock_hz));
                 return;
             }
             Line::Change(controller, Change::Level(signal, level), Some(span)) => {
@@ -149,7 +148,7 @@ mod tests {
         panel.receive(typed);
         panel.end_line();
         panel.execute(&mut session, &mut line);
-        while let Some(until) = panel.waits {
+        while let Some(until) = panel.wait_until {
             session.advance::<Digest>(until, &mut []);
             panel.execute(&mut session, &mut line);
         }
@@ -172,6 +171,7 @@ mod tests {
 
     #[test]
     fn executes_lines_in_their_cycles_and_ignores_invalid_ones() {
+        // A second change of a signal comes one cycle later. A recorded push has the default level.
         let typed = b"press start 20us\ndance\r\n\nwait 1ms\npower 0\nwait 0s\npower 1\npush -3";
         let expected =
             [(10, "start 1"), (30, "start 0"), (1010, "power 0"), (1011, "power 1"), (1010, "push 1")];

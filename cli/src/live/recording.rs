@@ -9,7 +9,6 @@ use stepscope_core::scenario::{Scenario, link};
 use stepscope_core::sim::session::{NotTheSession, Session, SessionClock};
 use stepscope_core::sim::{Experiment, session_times::SessionTimes};
 
-/// The two files of a recording, with their paths.
 pub(crate) struct Files {
     pub(crate) scenario: (PathBuf, Out),
     pub(crate) times: (PathBuf, Out),

@@ -1,5 +1,4 @@
-//! `stepscope serve`: a scenario's controllers behind a port, or stand-alone ones operated by lines on standard input
-//! (LIVE H2).
+//! `stepscope serve`: a scenario's controllers behind a port, or operated by lines on standard input (LIVE H2).
 
 use super::keyboard::Keyboard;
 use super::port::{Listener, Port, Rs485, Serial};
@@ -95,7 +94,8 @@ pub(crate) fn serve(arguments: &Arguments) -> Result<(), Failure> {
     let port = open(arguments, &session)?;
     let Arguments { pace, lag, once, progress, .. } = *arguments;
     let records = arguments.record.is_some();
-    let mut server = Server::new(&Settings { pacing: pace, lag, records, once, progress }, session, port);
+    let mut server =
+        Server::new(&Settings { pacing: pace, lag_ms: lag, records, once, progress }, session, port);
     let ended = server.run();
     // A closed standard output must not lose the recording.
     let printed = server.print_end().map_err(Failure::output);

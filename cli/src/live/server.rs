@@ -38,7 +38,7 @@ pub(super) enum Pacing {
 
 pub(super) struct Settings {
     pub(super) pacing: Pacing,
-    pub(super) lag: u64,
+    pub(super) lag_ms: u64,
     pub(super) records: bool,
     pub(super) once: bool,
     pub(super) progress: bool,
@@ -61,14 +61,15 @@ pub(super) struct Server {
     input: Input,
     /// Whether the client has stopped sending; its last bytes may still be buffered.
     client_is_leaving: bool,
-    dropped: u64,
+    /// Bytes that clients had sent and that were dropped when they left.
+    dropped_input: u64,
     /// Bytes of replies that the port has not accepted yet.
     unsent: VecDeque<u8>,
     /// Bytes of replies dropped because the host does not read.
-    unread: u64,
+    dropped_replies: u64,
     reply_delays: Lateness,
     last_wait: Duration,
-    /// Maximum delay of the model beyond the last wait, since the last status line.
+    /// Since the last status line: the most that the model was behind the clock, less the time it had just slept.
     max_behind: Duration,
     pub(super) times: SessionTimes,
     pub(super) line: StatusLine,
@@ -86,7 +87,7 @@ impl Server {
             session,
             port,
             pacing: settings.pacing,
-            clock: SessionClock::new(clock_hz, pace, settings.lag * 1_000_000),
+            clock: SessionClock::new(clock_hz, pace, settings.lag_ms * 1_000_000),
             watch: StopWatch::start(),
             once: settings.once,
             input_ended: false,
@@ -95,13 +96,13 @@ impl Server {
             silent_since: Duration::ZERO,
             input: Input::default(),
             client_is_leaving: false,
-            dropped: 0,
+            dropped_input: 0,
             unsent: VecDeque::new(),
-            unread: 0,
+            dropped_replies: 0,
             reply_delays: Lateness::default(),
             last_wait: Duration::ZERO,
             max_behind: Duration::ZERO,
-            times: SessionTimes::new(unix_ms(), name, settings.lag, settings.records),
+            times: SessionTimes::new(unix_ms(), name, settings.lag_ms, settings.records),
             line: StatusLine::new(settings.progress),
         }
     }
@@ -145,6 +146,7 @@ impl Server {
                 self.receive(buffer.get(..count).unwrap_or_default());
             }
             Received::Connected => {
+                // With `once`, a second client ends the session: the first had already stopped sending.
                 self.input_ended |= self.once && self.client_is_leaving;
                 self.drop_input();
             }
@@ -211,7 +213,7 @@ impl Server {
     fn drop_input(&mut self) {
         let count = self.input.clear();
         if count > 0 {
-            self.dropped += count as u64;
+            self.dropped_input += count as u64;
             self.line
                 .note(&format!("dropped {count} bytes that the client sent faster than the line takes them"));
         }
@@ -232,12 +234,13 @@ impl Server {
         self.panel.as_ref().is_none_or(|panel| panel.is_done() && is_last())
     }
 
-    /// The next cycle with bytes to write or a line to execute. With `--pace max` no round goes beyond it.
+    /// The next cycle with bytes to write or a line to execute. With `--pace max` no round goes beyond it; in real
+    /// time only the wait ends at it.
     fn deadline(&self) -> Instant {
-        let waits = self.panel.as_ref().and_then(|panel| panel.waits);
+        let wait_until = self.panel.as_ref().and_then(|panel| panel.wait_until);
         // Waking for every byte would delay the process on a busy system.
         let due = self.session.deadline_of_round(Cycles(self.round_cycles()));
-        waits.map_or(due, |waits| waits.min(due))
+        wait_until.map_or(due, |until| until.min(due))
     }
 
     fn round_cycles(&self) -> u64 {
@@ -247,30 +250,11 @@ impl Server {
 
     /// Runs one round of the model; returns how long to wait for bytes.
     fn advance(&mut self) -> Duration {
-        let now = self.session.now();
-        let step = self.round_cycles();
         let (to, wait) = match self.pacing {
-            Pacing::Real(_) => {
-                let target = self.clock.target(self.watch.nanos(), now);
-                let behind = self.clock.nanos(Cycles(target.0.saturating_sub(now.0)));
-                self.max_behind =
-                    self.max_behind.max(Duration::from_nanos(behind).saturating_sub(self.last_wait));
-                let waits = self.panel.as_ref().and_then(|panel| panel.waits).unwrap_or(Instant::NEVER);
-                let to = target.min(Instant(now.0 + step)).min(waits);
-                self.input.feed(&mut self.session, to + Cycles(ROUNDS_AHEAD * step));
-                (to, if to < target { Duration::ZERO } else { IDLE_WAIT })
-            }
-            Pacing::Max if !self.input.is_empty() || self.deadline() != Instant::NEVER => {
-                self.input.feed(&mut self.session, now + Cycles(MAX_ROUND));
-                (self.deadline().min(Instant(now.0.saturating_add(MAX_ROUND))), Duration::ZERO)
-            }
-            Pacing::Max if self.watch.elapsed().saturating_sub(self.silent_since) < RESPONSE_TIME => {
-                (now, RESPONSE_TIME)
-            }
-            Pacing::Max if !self.session.is_idle() => (Instant(now.0 + MAX_ROUND), Duration::ZERO),
-            Pacing::Max => (now, IDLE_WAIT),
+            Pacing::Real(_) => self.real_round(),
+            Pacing::Max => self.unpaced_round(),
         };
-        if to > now {
+        if to > self.session.now() {
             self.session.advance::<Digest>(to, &mut []);
         }
         self.last_wait = match (self.pacing, self.deadline()) {
@@ -281,6 +265,35 @@ impl Server {
             _ => wait,
         };
         self.last_wait
+    }
+
+    /// The end of a round in real time, and how long to wait after it.
+    fn real_round(&mut self) -> (Instant, Duration) {
+        let (now, step) = (self.session.now(), self.round_cycles());
+        let target = self.clock.target(self.watch.nanos(), now);
+        let behind = self.clock.nanos(Cycles(target.0.saturating_sub(now.0)));
+        self.max_behind = self.max_behind.max(Duration::from_nanos(behind).saturating_sub(self.last_wait));
+        let wait_until = self.panel.as_ref().and_then(|panel| panel.wait_until).unwrap_or(Instant::NEVER);
+        let to = target.min(Instant(now.0 + step)).min(wait_until);
+        self.input.feed(&mut self.session, to + Cycles(ROUNDS_AHEAD * step));
+        (to, if to < target { Duration::ZERO } else { IDLE_WAIT })
+    }
+
+    /// The end of a round with `--pace max`, and how long to wait after it.
+    fn unpaced_round(&mut self) -> (Instant, Duration) {
+        let now = self.session.now();
+        let (deadline, round_end) = (self.deadline(), Instant(now.0.saturating_add(MAX_ROUND)));
+        if !self.input.is_empty() || deadline != Instant::NEVER {
+            self.input.feed(&mut self.session, now + Cycles(MAX_ROUND));
+            (self.deadline().min(round_end), Duration::ZERO)
+        } else if self.watch.elapsed().saturating_sub(self.silent_since) < RESPONSE_TIME {
+            // The host may still respond.
+            (now, RESPONSE_TIME)
+        } else if !self.session.is_idle() {
+            (round_end, Duration::ZERO)
+        } else {
+            (now, IDLE_WAIT)
+        }
     }
 
     fn write_replies(&mut self) -> io::Result<()> {
@@ -310,7 +323,7 @@ impl Server {
         }
         let too_many = self.unsent.len().saturating_sub(MAX_UNSENT);
         self.unsent.drain(..too_many);
-        self.unread += too_many as u64;
+        self.dropped_replies += too_many as u64;
         Ok(())
     }
 
@@ -333,13 +346,14 @@ impl Server {
         }
         let setbacks = self.clock.setbacks();
         if setbacks.count > 0 {
+            // The word of the output's first version.
             writeln!(out, "stretches {} cycles {}", setbacks.count, setbacks.cycles.0)?;
         }
-        if self.unread > 0 {
-            writeln!(out, "reply_bytes_not_read {}", self.unread)?;
+        if self.dropped_replies > 0 {
+            writeln!(out, "reply_bytes_not_read {}", self.dropped_replies)?;
         }
-        if self.dropped > 0 {
-            writeln!(out, "bytes_dropped {}", self.dropped)?;
+        if self.dropped_input > 0 {
+            writeln!(out, "bytes_dropped {}", self.dropped_input)?;
         }
         out.flush()
     }

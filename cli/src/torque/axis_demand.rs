@@ -1,10 +1,9 @@
-//! A motor and its demand for torque.
+//! An axis, or a channel without a plan, with its motor and its demand for torque.
 
 use stepscope_core::inspect::motion::torque::{Demand, Machine};
 use stepscope_core::inspect::plant::model_agreement::Agreement;
 use stepscope_core::{motion::AxisPlan, peripheral::trace::Step};
 
-/// An axis, or a channel without a plan, with its motor.
 pub(crate) struct AxisDemand {
     pub(crate) axis: usize,
     pub(crate) machine: Machine,

@@ -89,7 +89,6 @@ pub struct TimedByte {
     pub tick: u64,
     /// Index into [`Capture::channels`].
     pub channel: u8,
-    /// Its value.
     pub byte: u8,
     /// Whether the file reports a low stop bit.
     pub framing_error: bool,
@@ -107,7 +106,6 @@ pub struct TimedPosition {
 /// The contents of a file: levels, bytes or positions; the other two are empty.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Capture {
-    /// Format of the file.
     pub format: Format,
     /// Length of a tick; `None` if the file does not give it.
     pub timebase: Option<Timebase>,
@@ -128,7 +126,6 @@ pub struct Capture {
 }
 
 impl Capture {
-    /// An empty capture.
     pub const fn new(format: Format) -> Self {
         Self {
             format,
@@ -171,7 +168,6 @@ impl Capture {
         Some(steps)
     }
 
-    /// Whether nothing was read.
     pub const fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -53,27 +53,22 @@ struct Block {
 }
 
 impl Changes {
-    /// No changes.
     pub const fn new() -> Self {
         Self { blocks: Vec::new(), len: 0, last: None, mask: 0 }
     }
 
-    /// Number of changes.
     pub const fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are no changes.
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// The earliest change.
     pub fn first(&self) -> Option<Change> {
         self.blocks.first().map(|block| block.first)
     }
 
-    /// The latest change.
     pub const fn last(&self) -> Option<Change> {
         self.last
     }
@@ -132,7 +127,6 @@ impl Changes {
         self.blocks.push(Block { first, rows: Vec::new() });
     }
 
-    /// Iterates over all changes.
     pub fn iter(&self) -> Iter<'_> {
         Iter { blocks: self.blocks.iter(), decoder: Decoder::default(), rows: &[] }
     }
@@ -203,7 +197,6 @@ impl Decoder {
     }
 }
 
-/// Iterator over changes.
 #[derive(Clone, Debug)]
 pub struct Iter<'a> {
     blocks: slice::Iter<'a, Block>,

@@ -102,7 +102,6 @@ pub enum PulseSource {
 pub struct EdgeHint {
     /// Number of the motor, from 0.
     pub motor: u8,
-    /// Index of the channel.
     pub channel: usize,
     /// Rising and falling edges are evenly spaced, as for a driver that steps on both edges.
     pub both_edges: bool,
@@ -118,7 +117,6 @@ pub struct Entry {
     /// Bit of the signal: 0 to 15 STEP, 16 to 31 DIR, 32 EN, 33 RX, 34 TX, 35 DE. Above, 16 each: DEDGE, CW, CCW, A
     /// and B.
     pub bit: u32,
-    /// Index of the channel.
     pub channel: usize,
     /// Active low.
     pub inverted: bool,
@@ -202,15 +200,6 @@ impl ChannelMap {
 
     /// Reads a map as [`Self::to_text`] writes it; ignores blanks and the case of signals.
     /// Errors: [`MapError`] of the first invalid pair.
-    ///
-    /// ```
-    /// use stepscope_capture::{Capture, ChannelMap, capture::{Channel, Format}};
-    ///
-    /// let channels = ["CH1", "CH2"].map(|name| Channel { name: name.into() });
-    /// let capture = Capture { channels: channels.into(), ..Capture::new(Format::Vcd) };
-    /// let map = ChannelMap::parse("step0=CH1, DIR0=!#1", &capture).expect("both channels exist");
-    /// assert_eq!(map.to_text(&capture), "STEP0=CH1,DIR0=!CH2");
-    /// ```
     pub fn parse(text: &str, capture: &Capture) -> Result<Self, MapError> {
         let mut map = Self::default();
         for pair in text.split(',').map(str::trim).filter(|pair| !pair.is_empty()) {

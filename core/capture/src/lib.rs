@@ -15,6 +15,7 @@
 //! let signals = RecordedSignals::new(capture, &map, timebase, 16_000_000).expect("the recording is short");
 //! assert_eq!(signals.records[1].cycle.0, 160);
 //! ```
+#![allow(missing_docs, reason = "a name that has its meaning and unit needs no comment")]
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

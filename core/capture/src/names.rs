@@ -242,8 +242,7 @@ fn without_index(name: &str, indexed: bool) -> &str {
     if indexed && rest.contains(|c: char| c.is_ascii_alphabetic()) { rest } else { name }
 }
 
-/// Splits a name into words in capitals: at marks, and where upper and lower case or digits and letters change, unless
-/// the whole is a known word.
+/// Splits a name into words in capitals at marks, changes of case, and digits, unless all of it is a known word.
 fn split_words(name: &str) -> Vec<String> {
     let mut all = Vec::new();
     for part in name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty()) {

@@ -29,16 +29,11 @@ const LAST_CYCLE: u64 = 9_000_000_000_000_000;
 /// Records of the signals of a capture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordedSignals {
-    /// Frequency of the clock.
     pub clock_hz: u32,
-    /// Number of motors.
     pub channels: u8,
-    /// Records from cycle 0; cycles rise and levels differ. Signals without a channel have their reset levels, and DIR
-    /// is right.
+    /// From cycle 0; cycles rise and levels differ. Signals without a channel have their reset levels; DIR is right.
     pub records: Vec<Record>,
-    /// End of the recording.
     pub end: Instant,
-    /// Effects of rounding.
     pub rounding: Rounding,
 }
 
@@ -148,8 +143,7 @@ pub struct Records<'m, I> {
 }
 
 impl<'m> Records<'m, changes::Iter<'m>> {
-    /// Records of a capture, as in [`RecordedSignals::new`].
-    /// Errors: [`TooLate`].
+    /// Records of a capture, as in [`RecordedSignals::new`]. Errors: [`TooLate`].
     pub fn new(
         capture: &'m Capture,
         map: &'m ChannelMap,
@@ -159,8 +153,7 @@ impl<'m> Records<'m, changes::Iter<'m>> {
         Self::starting_at(capture, map, timebase, clock_hz, 0)
     }
 
-    /// Records from a tick on; the first, at cycle 0, has the levels at that time.
-    /// Errors: [`TooLate`].
+    /// Records from a tick on; the first, at cycle 0, has the levels at that time. Errors: [`TooLate`].
     pub fn starting_at(
         capture: &'m Capture,
         map: &'m ChannelMap,

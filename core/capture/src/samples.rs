@@ -9,14 +9,10 @@
 //! }
 //! ```
 
-/// A sample recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
-    /// Name on the command line and in the page.
     pub id: &'static str,
-    /// Name of its file.
     pub file: &'static str,
-    /// Contents of its file.
     pub bytes: &'static [u8],
     /// The planned scenario, as JSON.
     pub scenario: &'static str,
@@ -38,7 +34,6 @@ pub const SAMPLES: [Sample; 2] = [
     },
 ];
 
-/// Finds a sample by its `id`.
 pub fn sample(id: &str) -> Option<&'static Sample> {
     SAMPLES.iter().find(|sample| sample.id == id)
 }

@@ -8,7 +8,6 @@ pub struct Timebase {
 }
 
 impl Timebase {
-    /// Ticks of 1 s.
     pub const SECOND: Self = Self { numerator: 1, denominator: 1 };
 
     /// Ticks of `numerator / denominator` seconds; `None` if one is 0.

@@ -35,7 +35,6 @@ const MAX_START_DEVIATION: f64 = 1.5;
 /// Increment of the deviations that are tried.
 const DEVIATION_STEP: f64 = 0.25;
 
-/// Parity of a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Parity {
     /// No parity bit.
@@ -124,7 +123,6 @@ impl FromStr for Format {
     }
 }
 
-/// An edge of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
     /// Time in any unit: samples, ticks or cycles.
@@ -142,14 +140,11 @@ pub enum Fault {
     Parity,
 }
 
-/// A decoded word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
     /// Time of its start edge.
     pub start: u64,
-    /// Its data bits.
     pub byte: u8,
-    /// Its fault, if any.
     pub fault: Option<Fault>,
 }
 

@@ -92,8 +92,7 @@ impl Eeprom {
         }
     }
 
-    /// Begins to write a record. `repeats` if the same record will be needed again afterwards; it has an effect only if
-    /// memory already holds the same bytes.
+    /// `repeats`: the same record will be needed again; this has an effect only if memory already holds its bytes.
     pub(crate) fn begin(&mut self, now: u64, address: usize, record: Vec<u8>, repeats: bool) {
         debug_assert!(self.writing.is_none(), "a record is being written");
         let current = self.bytes.get(address..address.saturating_add(record.len()));
@@ -104,8 +103,7 @@ impl Eeprom {
             first.map(|byte| Writing { address, remaining, byte, begun: now, not_before: 0, repeats });
     }
 
-    /// Computes the wear and the byte in progress of a repeated record at the end of the cycle before `now`. After that it
-    /// is an ordinary record.
+    /// Computes the wear and the byte in progress of a repeated record before `now`; then it is an ordinary record.
     pub(crate) fn catch_up(&mut self, now: u64) {
         let Some(writing) = self.writing.as_mut().filter(|writing| writing.repeats) else { return };
         writing.repeats = false;
@@ -138,8 +136,7 @@ impl Eeprom {
         false
     }
 
-    /// Drops the remaining bytes when the power fails in cycle `now`. The byte in progress is finished unless it began in
-    /// `now`.
+    /// The power fails in `now`: drops the remaining bytes, and the one in progress if it began in `now`.
     pub(crate) fn finish_byte_only(&mut self, now: u64) {
         match &mut self.writing {
             Some(writing) if writing.begun < now => writing.remaining = Vec::new().into_iter(),

@@ -101,8 +101,7 @@ impl Signal {
 pub enum Change {
     /// Sets the raw level of a signal from this cycle on.
     Level(Signal, bool),
-    /// Moves the axis by hand by -10^6 to 10^6 steps, right positive. It has an effect only while the motor
-    /// is disabled (EN = 0).
+    /// Moves the axis by hand by -10^6 to 10^6 steps, right positive; only while the motor is disabled (EN = 0).
     Push(i32),
 }
 

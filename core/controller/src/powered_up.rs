@@ -1,5 +1,4 @@
-//! What a [`Runner`](crate::Runner) needs of its machine: power-up on a chip, and EEPROM timing by the chip (CONTROLLER G2,
-//! G7).
+//! What a [`Runner`](crate::Runner) needs of its machine: power-up, and EEPROM timing by the chip (CONTROLLER G2, G7).
 
 use crate::controller::{Controller, GroupCounter};
 use crate::input::{Change, Input, Signal};
@@ -18,8 +17,7 @@ impl StandAlone {
         machine
     }
 
-    /// Enters an input of the first controller in cycle `at`, which has not been run. Returns false if the input already
-    /// has an entry in that cycle.
+    /// Enters an input of the first controller in a future cycle; false if the input already has an entry in that cycle.
     pub(crate) fn enter_level(&mut self, at: Instant, signal: Signal, level: bool) -> bool {
         let input = Input { cycle: at, change: Change::Level(signal, level) };
         let is_free = self.controllers.first().is_some_and(|controller| !controller.script.has(input));

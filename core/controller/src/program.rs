@@ -143,8 +143,7 @@ impl Controller {
         }
     }
 
-    /// Ends a group. The next one, `next` or the following one, is the current group from now on and begins after
-    /// `delay` cycles.
+    /// Ends a group. The next one, by default the following, is current from now on and begins after `delay` cycles.
     pub(crate) fn end_group(&mut self, now: u64, delay: u64, next: Option<u32>) {
         let used = self.numbers.common(Common::UsedGroups);
         let loops = self.numbers.common(Common::Loops);

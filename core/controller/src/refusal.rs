@@ -81,8 +81,7 @@ pub enum Refusal {
 pub struct Refused {
     /// `None` for the bus or all controllers.
     pub controller: Option<usize>,
-    /// The field as in a scenario: within the controller, such as `groups[2].repeat.first`, or `clock_hz` or
-    /// `bus.channels`.
+    /// As in a scenario: `groups[2].repeat.first` within the controller, or `clock_hz` or `bus.channels`.
     pub path: String,
     pub refusal: Refusal,
 }

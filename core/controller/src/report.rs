@@ -12,8 +12,7 @@ impl StandAlone {
         &self.checked
     }
 
-    /// Position counters of the bus: +1 per rising STEP edge with DIR 1, -1 with DIR 0. [`Self::position`] is what a
-    /// controller assumes.
+    /// Position counters of the bus: +1 per rise of STEP with DIR 1, -1 with DIR 0; see also [`Self::position`].
     pub fn positions(&self) -> [i32; MAX_CHANNELS] {
         let mut positions = [0; MAX_CHANNELS];
         for (position, controller) in positions.iter_mut().zip(&self.controllers) {
@@ -109,8 +108,7 @@ impl StandAlone {
         self.controllers.get(i).map_or(&[], |controller| controller.eeprom.writes())
     }
 
-    /// Position and trust that a power-up now would read from memory; `None` without a valid record. With trust 0 the
-    /// position is unknown.
+    /// Position and trust that a power-up now would read; `None` without a valid record; trust 0 is an unknown position.
     pub fn position_after_power_up(&self, i: usize) -> Option<(i32, u8)> {
         self.controllers.get(i)?.stored_position()
     }

@@ -180,8 +180,7 @@ impl Experiment {
         run.host()?.conversation().acknowledged().nth(self.job_index(index)?)
     }
 
-    /// The host's conversation for a real line from cycle `start` on, with an opening tick; `None` if the host does not
-    /// wait for replies.
+    /// The host's conversation for a real line from cycle `start` on, with an opening tick; `None` on a raw line.
     pub fn conversation(&self, start: Instant) -> Option<Conversation> {
         let bit = Config::bit_of(self.config().clock_hz(), self.baud());
         let waits = self.checked.waits_for_replies();

@@ -81,10 +81,7 @@ pub struct CaptureFile {
     options: Option<OpenOptions>,
 }
 
-/// File name and scenario of a sample: `{file, scenario}`.
-///
-/// # Errors
-/// For an unknown sample.
+/// File name and scenario of a sample: `{file, scenario}`. Errors: for an unknown sample.
 #[wasm_bindgen]
 pub fn sample_facts(id: &str) -> Result<JsValue, JsError> {
     #[derive(Serialize)]
@@ -227,7 +224,6 @@ impl CaptureFile {
         Self { capture, error: error.map(|error| error.to_string()), map, loaded: None, options: None }
     }
 
-    /// A sample, by its name.
     pub fn sample(id: &str) -> Option<Self> {
         let bytes = samples::sample(id)?.bytes;
         let Reading { capture, error } = read(io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
@@ -260,10 +256,7 @@ impl CaptureFile {
         })
     }
 
-    /// A preview with some of `PreviewOptions`.
-    ///
-    /// # Errors
-    /// Its `field` is the option that has to change.
+    /// A preview with some of `PreviewOptions`. Errors: its `field` is the option that has to change.
     pub fn preview(&mut self, options: JsValue) -> Result<JsValue, JsValue> {
         let PreviewOptions {
             map,
@@ -316,10 +309,7 @@ impl CaptureFile {
     }
 
     /// A channel in columns: `{position_min, position_max, speed_min, speed_max}`, in steps and steps/s; null before a
-    /// preview and without levels.
-    ///
-    /// # Errors
-    /// As `preview`.
+    /// preview and without levels. Errors: as `preview`.
     pub fn overview(&self, channel: u8, columns: u32) -> Result<JsValue, JsError> {
         #[derive(Serialize)]
         struct Columns {

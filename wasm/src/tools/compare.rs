@@ -59,9 +59,7 @@ impl ComparedMotion {
 impl ValidatedScenario {
     /// A move of an axis as every kind of motion with ramps of `ramp_s` (`ComparedMotion`), with its `move` in JSON and
     /// its curve as columns `at_speed` and `at_acceleration` at `points` times. Empty for a move without distance.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such axis.
+    /// Errors: if the scenario has problems, or no such axis.
     pub fn compare(
         &self,
         controller: usize,

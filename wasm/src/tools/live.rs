@@ -1,5 +1,4 @@
-//! Real serial lines (LIVE H1, H3, H4): the host of a device ([`LiveHost`], [`LiveRawHost`]) and the device of a host
-//! ([`LiveDevice`]). Times are in ms since the start.
+//! Real serial lines (LIVE H1, H3, H4): the host of a device and the device of a host. Times are in ms since the start.
 
 mod device;
 mod host;
@@ -17,10 +16,7 @@ const SEGMENTS: &str = "segments send nothing; choose ticks as the step generati
 const SCRIPT: &str =
     "the replies to a line script are unknown; choose a motion or packets as the source in the form";
 
-/// Whether the host of a scenario sends raw packets, without replies.
-///
-/// # Errors
-/// If it cannot be read.
+/// Whether the host of a scenario sends raw packets, without replies. Errors: if it cannot be read.
 #[wasm_bindgen]
 pub fn live_is_raw(json: &str) -> Result<bool, JsError> {
     Ok(read(json)?.line.protocol == Protocol::Raw)

@@ -12,9 +12,7 @@ use wasm_bindgen::prelude::*;
 #[wasm_bindgen]
 impl ValidatedScenario {
     /// All measures of an axis ([`Measures`]); null without a motion.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or too many steps ([`within_bounds`]).
+    /// Errors: if the scenario has problems, or too many steps ([`within_bounds`]).
     pub fn measures(&self, controller: usize, axis: u8) -> Result<JsValue, JsError> {
         let experiment = self.0.experiment().map_err(listed)?;
         let Some(plan) = experiment.plans_of(controller).get(usize::from(axis)) else {

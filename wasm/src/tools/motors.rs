@@ -27,7 +27,6 @@ use stepscope_core::{
 };
 use wasm_bindgen::prelude::*;
 
-/// A motor or a driver.
 #[derive(Serialize)]
 struct Sheet {
     id: &'static str,
@@ -69,9 +68,7 @@ pub fn with_motor(json: &str, motor: &str, drive: &str) -> String {
 #[wasm_bindgen]
 impl ValidatedScenario {
     /// Start-stop rate of a motor in steps/s, for one turn; undefined below 500.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such motor.
+    /// Errors: if the scenario has problems, or no such motor.
     pub fn start_stop(&self, controller: usize, channel: usize) -> Result<Option<f64>, JsError> {
         let setup = self.motor(controller, channel)?;
         let steps = setup.motors[0].steps_per_turn();
@@ -79,19 +76,14 @@ impl ValidatedScenario {
     }
 
     /// Pull-out rate in steps/s with a ramp of `ramp` steps/s^2.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such motor.
+    /// Errors: if the scenario has problems, or no such motor.
     pub fn pull_out(&self, controller: usize, channel: usize, ramp: f64) -> Result<Option<f64>, JsError> {
         let setup = self.motor(controller, channel)?;
         search(|rate| pulls(&setup, rate, ramp)).map_err(refused)
     }
 
     /// Available and needed torque at each rate up to `most` steps/s, in mN*m: `{rate, available, needed}`; `needed` is empty
-    /// without a plan.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such motor.
+    /// without a plan. Errors: if the scenario has problems, or no such motor.
     pub fn torque_of_motor(&self, controller: usize, channel: usize, most: f64) -> Result<Object, JsError> {
         let setup = self.motor(controller, channel)?;
         let experiment = self.0.experiment().map_err(listed)?;
@@ -106,9 +98,7 @@ impl ValidatedScenario {
     }
 
     /// Oscillation at each rate in full steps/s: `{oscillation, loses}`; `loses` is 1 if it loses steps.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such motor.
+    /// Errors: if the scenario has problems, or no such motor.
     pub fn resonance(
         &self,
         controller: usize,
@@ -134,9 +124,7 @@ impl ValidatedScenario {
 
     /// The supply current around one step (RU 2704486, figure 1), for a slot of the bus or 2 ms:
     /// `{rest_a, least_a, greatest_a, reached_cycles, settled_cycles, slot_cycles, x, y}`, x in s after the step.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such motor.
+    /// Errors: if the scenario has problems, or no such motor.
     pub fn settling(&self, controller: usize, channel: usize) -> Result<Object, JsError> {
         let setup = self.motor(controller, channel)?;
         let experiment = self.0.experiment().map_err(listed)?;
@@ -162,10 +150,7 @@ impl ValidatedScenario {
     }
 
     /// The measured supply current of a run (RU 2704486, figure 2): `{x, min, max, above_a, below_a}`, x in s; the deviations
-    /// are null with too few steps.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no plant.
+    /// are null with too few steps. Errors: if the scenario has problems, or no plant.
     pub fn supply_current(&self, controller: usize, columns: usize) -> Result<Object, JsError> {
         let experiment = self.0.experiment().map_err(listed)?;
         let mut run = experiment.start();
@@ -202,7 +187,6 @@ impl ValidatedScenario {
 }
 
 impl ValidatedScenario {
-    /// One motor with its supply.
     fn motor(&self, controller: usize, channel: usize) -> Result<Setup, JsError> {
         let experiment = self.0.experiment().map_err(listed)?;
         let setup =

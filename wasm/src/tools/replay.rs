@@ -5,9 +5,7 @@ use stepscope_core::sim::replayed;
 use wasm_bindgen::prelude::*;
 
 /// A scenario that sends the packets of an exported table to the controllers of `json`.
-///
-/// # Errors
-/// With the first invalid line of the table.
+/// Errors: with the first invalid line of the table.
 #[wasm_bindgen]
 pub fn replay(table: &str, json: &str) -> Result<String, JsError> {
     let (scenario, _) = Scenario::from_json_lenient(json);

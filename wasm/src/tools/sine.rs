@@ -69,9 +69,7 @@ pub fn sine_vertices(segments: usize, free: bool, order: u16) -> Option<Object> 
 impl ValidatedScenario {
     /// A quarter of the first sine in segments of an axis: columns `from_deg`, `to_deg`, `steps`, `rate` and `duration_s`,
     /// and its bytes as segments and as intervals; undefined without one.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such axis.
+    /// Errors: if the scenario has problems, or no such axis.
     pub fn sine_segments(&self, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
         let SelectedAxis { plan, .. } = self.axis(controller, axis)?;
         let sine = plan.moves().iter().find_map(|planned| match &planned.profile {

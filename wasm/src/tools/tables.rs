@@ -16,9 +16,7 @@ pub fn step_walker() -> String {
 #[wasm_bindgen]
 impl ValidatedScenario {
     /// Size and error of a table. `form` is `exact`, `document` or `compressed`, with at most `error_us`.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such axis. The result has other reasons in `why`.
+    /// Errors: if the scenario has problems, or no such axis. The result has other reasons in `why`.
     pub fn step_table(
         &self,
         controller: usize,
@@ -31,9 +29,7 @@ impl ValidatedScenario {
     }
 
     /// A table as source code; `language` is `c`, `avr`, `rust` or `csv`, and `file` the name of the scenario's file.
-    ///
-    /// # Errors
-    /// As [`ValidatedScenario::step_table`], or if the table is impossible.
+    /// Errors: as [`ValidatedScenario::step_table`], or if the table is impossible.
     #[allow(clippy::too_many_arguments, reason = "JavaScript passes plain values")]
     pub fn step_source(
         &self,
@@ -51,9 +47,7 @@ impl ValidatedScenario {
     }
 
     /// Size and error of a table of a channel without a plan, from the records of `Simulation::records_of`.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or the bus cannot run segments.
+    /// Errors: if the scenario has problems, or the bus cannot run segments.
     #[allow(clippy::too_many_arguments, reason = "JavaScript passes plain values")]
     pub fn step_table_of_run(
         &self,
@@ -68,9 +62,7 @@ impl ValidatedScenario {
     }
 
     /// That table as source code, as [`ValidatedScenario::step_source`].
-    ///
-    /// # Errors
-    /// As [`ValidatedScenario::step_table_of_run`], or if the table is impossible.
+    /// Errors: as [`ValidatedScenario::step_table_of_run`], or if the table is impossible.
     #[allow(clippy::too_many_arguments, reason = "JavaScript passes plain values")]
     pub fn step_source_of_run(
         &self,

@@ -11,10 +11,7 @@ use wasm_bindgen::prelude::*;
 #[wasm_bindgen]
 impl ValidatedScenario {
     /// The torque of an axis: `report` ([`TorqueReport`]), `rate`, `available` and `needed` (NaN at unused rates), in mN*m;
-    /// undefined without a motor.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or no such axis.
+    /// undefined without a motor. Errors: if the scenario has problems, or no such axis.
     pub fn torque(&self, controller: usize, axis: usize) -> Result<Option<Object>, JsError> {
         let selected = self.axis(controller, axis)?;
         let Some(report) = TorqueReport::of(selected.axis, selected.plan) else { return Ok(None) };
@@ -22,10 +19,7 @@ impl ValidatedScenario {
     }
 
     /// The same for a channel without a plan, from the records of `Simulation::records_of`. The motor is that of the plant, or
-    /// the listed `motor`; undefined without one.
-    ///
-    /// # Errors
-    /// If the scenario has problems.
+    /// the listed `motor`; undefined without one. Errors: if the scenario has problems.
     pub fn torque_of_steps(
         &self,
         controller: usize,

@@ -34,10 +34,7 @@ pub struct TraceFile {
 
 #[wasm_bindgen]
 impl ValidatedScenario {
-    /// Runs the scenario for the comparison.
-    ///
-    /// # Errors
-    /// If the scenario has problems.
+    /// Runs the scenario for the comparison. Errors: if the scenario has problems.
     pub fn trace_file(&self, controller: usize) -> Result<TraceFile, JsError> {
         let experiment = self.0.experiment().map_err(listed)?;
         let (_, mut recordings) =
@@ -50,18 +47,12 @@ impl ValidatedScenario {
 
 #[wasm_bindgen]
 impl TraceFile {
-    /// Compares a piece of the file; true if the rest is not needed.
-    ///
-    /// # Errors
-    /// With the first invalid line.
+    /// Compares a piece of the file; true if the rest is not needed. Errors: with the first invalid line.
     pub fn feed(&mut self, piece: &[u8]) -> Result<bool, JsError> {
         Ok(self.diff.feed(&self.recording.trace, piece)?)
     }
 
-    /// The result after the last piece.
-    ///
-    /// # Errors
-    /// If the file is empty, or its last line is invalid.
+    /// The result after the last piece. Errors: if the file is empty, or its last line is invalid.
     pub fn end(self) -> Result<JsValue, JsError> {
         let outcome = self.diff.finish(&self.recording.trace)?;
         object(&TraceComparison {

@@ -37,10 +37,7 @@ pub(crate) fn advance<S: Sink>(
     }
 }
 
-/// Progress, with the records of all controllers.
-///
-/// # Errors
-/// For more than [`MAX_RECORDS`].
+/// Progress, with the records of all controllers. Errors: for more than [`MAX_RECORDS`].
 pub(crate) fn progress(
     experiment: &Experiment,
     run: &Run,

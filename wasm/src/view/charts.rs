@@ -106,7 +106,6 @@ pub(crate) fn svg(size: (u32, u32), spec: &Spec) -> Result<(String, Plot), Strin
     Ok((text, plot))
 }
 
-/// Draws the axes of a chart; returns its plotting area and the strokes of its series.
 fn draw(surface: Surface<'_>, spec: &Spec) -> Result<(Plot, Vec<Stroke>), String> {
     let root = surface.into_drawing_area();
     for (name, axis) in [("x", &spec.x), ("y", &spec.y)] {
@@ -226,9 +225,7 @@ mod page {
     use web_sys::{CanvasRenderingContext2d, HtmlCanvasElement};
 
     /// Draws a chart on a canvas of the right device size; returns its [`Plot`](super::Plot).
-    ///
-    /// # Errors
-    /// For an invalid spec, an axis without length, or a canvas without a 2D context.
+    /// Errors: for an invalid spec, an axis without length, or a canvas without a 2D context.
     #[wasm_bindgen]
     #[allow(unreachable_pub, reason = "wasm-bindgen only exports public functions")]
     pub fn draw_chart(canvas: HtmlCanvasElement, spec: JsValue) -> Result<JsValue, JsError> {

@@ -19,10 +19,7 @@ const ROWS: usize = 1 << 14;
 impl Simulation {
     /// A piece of a file: `{bytes, next, rows}`. `next` is the value of `first_row` for the next piece, null at the end.
     /// `rows` is the number of source rows, for progress. Kinds are `vcd`, `edges`, `trace`, `ticks` and `segments`;
-    /// `first_cycle..=last_cycle` limits all but `segments`.
-    ///
-    /// # Errors
-    /// For an unknown controller or kind.
+    /// `first_cycle..=last_cycle` limits all but `segments`. Errors: for an unknown controller or kind.
     pub fn file_piece(
         &self,
         kind: &str,
@@ -62,10 +59,7 @@ impl Simulation {
         Ok(result)
     }
 
-    /// A scenario that replays the sent bytes or the segments.
-    ///
-    /// # Errors
-    /// If they exceed the limits of a scenario.
+    /// A scenario that replays the sent bytes or the segments. Errors: if they exceed the limits of a scenario.
     pub fn replay_scenario(&self) -> Result<String, JsError> {
         let scripted = scripted(Scenario::clone(&self.scenario), &self.experiment, &self.run);
         if let Err(problems) = scripted.check() {

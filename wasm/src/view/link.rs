@@ -42,10 +42,7 @@ fn decoded(fragment: &str) -> Result<LinkContent, LinkError> {
 
 #[wasm_bindgen]
 impl ValidatedScenario {
-    /// The link of the scenario, without the `#`.
-    ///
-    /// # Errors
-    /// If the scenario is invalid, or too long for a link.
+    /// The link of the scenario, without the `#`. Errors: if the scenario is invalid, or too long for a link.
     pub fn link(&self) -> Result<String, JsError> {
         if self.0.unreadable().is_empty() {
             Ok(pack(&self.0.scenario().to_compact_json())?)

@@ -14,8 +14,7 @@ impl Simulation {
         object(&PlantReport::of(&self.experiment, &self.run, self.selected))
     }
 
-    /// Curves of the supply and a motor by name ([`SUPPLY`], [`MOTOR`]): `x` in s, `min` and `max`; undefined for an unknown
-    /// motor.
+    /// Curves of the supply and a motor by name ([`SUPPLY`], [`MOTOR`]): `x` in s, `min`, `max`; undefined if unknown.
     pub fn plant_curves(&self, channel: usize, from: f64, to: f64, columns: usize) -> Option<Object> {
         let (log, values, names) = self.plant_values(channel)?;
         let window = CycleWindow { from: from.max(0.0) as u64, to: to.max(0.0) as u64, columns };

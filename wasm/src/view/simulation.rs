@@ -125,10 +125,7 @@ impl ControllerRecording {
 
 #[wasm_bindgen]
 impl ValidatedScenario {
-    /// A run before its first cycle.
-    ///
-    /// # Errors
-    /// If the scenario has problems; `check` lists them.
+    /// A run before its first cycle. Errors: if the scenario has problems; `check` lists them.
     pub fn run(&self) -> Result<Simulation, JsError> {
         let experiment = self.0.experiment().map_err(listed)?;
         Ok(Simulation::of(self.0.scenario(), experiment))
@@ -138,9 +135,7 @@ impl ValidatedScenario {
 #[wasm_bindgen]
 impl Simulation {
     /// Runs for about `max_records` more records (`advance`), then processes as many of a recording. Returns the progress.
-    ///
-    /// # Errors
-    /// If the run has too many records.
+    /// Errors: if the run has too many records.
     pub fn advance(&mut self, max_records: u32) -> Result<JsValue, JsError> {
         if self.is_simulated {
             self.process(max_records as usize);
@@ -168,7 +163,6 @@ impl Simulation {
         self.replies = Some(bytes);
     }
 
-    /// Selects a controller, if it exists.
     pub fn select(&mut self, controller: u32) {
         if (controller as usize) < self.recordings.len() {
             self.selected = controller as usize;

@@ -66,7 +66,25 @@ export function createLayout() {
     ),
   );
   return {
-    ...{ dialog, roles, about, choose, allowed, start, end, aside, stop, actions, status, progressText, progress },
-    ...{ curves, comparison, report, copy, reported, times, close },
+    dialog,
+    roles,
+    about,
+    choose,
+    allowed,
+    start,
+    end,
+    aside,
+    stop,
+    actions,
+    status,
+    progressText,
+    progress,
+    curves,
+    comparison,
+    report,
+    copy,
+    reported,
+    times,
+    close,
   };
 }

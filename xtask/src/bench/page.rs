@@ -1,5 +1,4 @@
-//! Runs the kernels in a browser. Their page posts its reports to a local server, which replies with the next number of
-//! rounds.
+//! Runs the kernels in a browser: their page posts its reports to a local server, whose reply is the number of rounds.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

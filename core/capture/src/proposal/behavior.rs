@@ -54,8 +54,7 @@ impl Behavior {
         if self.idles_high() { self.longest_low } else { self.longest_high }
     }
 
-    /// Whether it idles low and has pulses of similar width (at most 2:1). A serial line idles high or has bits of
-    /// different length.
+    /// Idles low, with pulses of similar width (at most 2:1). A serial line idles high or has bits of different length.
     pub(super) fn has_uniform_pulses(&self) -> bool {
         !self.starts_high
             && !self.ends_high

@@ -10,9 +10,7 @@ const PULSES_BETWEEN_PERCENT: usize = 50;
 
 /// A motor without a DIR.
 struct MotorEdges {
-    /// Index of the motor.
     motor: usize,
-    /// Its STEP channel.
     channel: usize,
     /// Times of the edges of STEP.
     edges: Vec<u64>,

@@ -14,8 +14,7 @@ pub(super) fn total_distance(changes: &[u64], edges: &[u64]) -> u64 {
     changes.iter().map(distance).fold(0, u64::saturating_add)
 }
 
-/// Whether the mean distance is at most [`MAX_DISTANCE_PERCENT`]. A change in the middle of an interval may belong to any
-/// motor.
+/// Whether the mean distance is at most [`MAX_DISTANCE_PERCENT`]; in the middle of an interval, any motor may fit.
 pub(super) fn are_close_to_pulses(total_distance: u64, changes: usize, edges: &[u64]) -> bool {
     // Every other edge: rise to rise.
     let intervals = edges.iter().zip(edges.iter().skip(2)).map(|(from, to)| to - from);

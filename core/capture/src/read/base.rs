@@ -5,13 +5,9 @@ use core::str::FromStr;
 /// Numeral base of bytes in text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Base {
-    /// Base 2, `bin`.
     Binary,
-    /// Base 8, `oct`.
     Octal,
-    /// Base 10, `dec`.
     Decimal,
-    /// Base 16, `hex`.
     Hexadecimal,
 }
 

@@ -13,9 +13,7 @@
 /// `mantissa / 10^places`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decimal {
-    /// The digits as an integer.
     pub mantissa: i128,
-    /// Number of decimal places.
     pub places: u32,
 }
 

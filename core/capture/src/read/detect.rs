@@ -1,5 +1,4 @@
-//! Detects the format of a file from its first bytes: by signatures, then by a table's column names, then by trying to
-//! read the first lines.
+//! Detects a file's format by signatures, then by a table's column names, then by trying to read the first lines.
 
 use super::fields::{Fields, fields, separator};
 use super::levels::{Layout, column_names, is_comment};

@@ -220,8 +220,7 @@ pub(super) fn is_line(line: &[u8]) -> bool {
     }
 }
 
-/// Accepts `55 AA   U.`, `0x55,0xAA`, `[55;aa]`, `55AA`, `\x55`. In a log a byte has two digits: a single one may be
-/// a count.
+/// Accepts `55 AA   U.`, `0x55,0xAA`, `[55;aa]`, `55AA`, `\x55`. A single digit in a log may be a count.
 fn parse_bytes(text: &[u8], bytes: &mut Vec<u8>, is_log: bool) -> Result<(), String> {
     let text = text.trim_ascii();
     match row::parse(text, bytes) {

@@ -55,15 +55,6 @@ pub use base::Base;
 pub use reading::{Limits, ReadError, ReadOptions, Reading};
 
 /// Reads a file of any [`Format`]. `watch` receives the number of bytes read at intervals and cancels by returning `false`.
-///
-/// ```
-/// use stepscope_capture::{capture::Format, read::{Limits, read}};
-///
-/// let table = "Time [s],STEP\n-0.5,0\n0.000001,1\n0.000003,\n";
-/// let reading = read(std::io::Cursor::new(table), &Limits::default(), &mut |_| true);
-/// assert_eq!((reading.capture.format, reading.capture.changes.len()), (Format::SaleaeCsv, 2));
-/// assert!(reading.error.expect("a level is missing").to_string().starts_with("line 4: STEP is “”, not 0 or 1; "));
-/// ```
 pub fn read<R: BufRead + Seek>(input: R, limits: &Limits, watch: &mut dyn FnMut(u64) -> bool) -> Reading {
     read_with_options(input, limits, &ReadOptions::default(), watch)
 }

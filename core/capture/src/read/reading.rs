@@ -4,11 +4,9 @@ use super::base::Base;
 use crate::capture::Capture;
 use core::fmt;
 
-/// Limits of reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Maximum number of changes, bytes or positions: a byte or position takes 16 bytes, a change usually two to
-    /// four.
+    /// Changes, bytes or positions: a byte or position takes 16 bytes, a change usually two to four.
     pub max_rows: usize,
 }
 
@@ -27,7 +25,6 @@ pub struct ReadOptions {
     pub base: Option<Base>,
 }
 
-/// Why reading stopped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
     /// Line of the text, from 1; 0 if the file has no lines.
@@ -59,7 +56,6 @@ impl core::error::Error for ReadError {}
 /// The contents up to the end or the first error.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reading {
-    /// What was read before the error.
     pub capture: Capture,
     /// Why reading stopped before the end of the file.
     pub error: Option<ReadError>,

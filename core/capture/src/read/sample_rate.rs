@@ -22,7 +22,6 @@ pub(super) fn parse_rate(text: &str) -> Option<Decimal> {
     Decimal::parse(number.trim().as_bytes())?.shifted(exponent).filter(|rate| rate.mantissa > 0)
 }
 
-/// Length of a sample.
 pub(super) fn period(rate: Decimal) -> Option<Timebase> {
     Timebase::new(power_of_ten(rate.places)?.try_into().ok()?, rate.mantissa.try_into().ok()?)
 }

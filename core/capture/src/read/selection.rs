@@ -1,5 +1,4 @@
-//! Selects channels of a file that has too many: requested ones first, then those with recognized names, then the
-//! others in order.
+//! Selects channels of a file that has too many: requested ones, then those with recognized names, then the others.
 
 use super::recorder::Recorder;
 use crate::{capture::MAX_CHANNELS, names::Meaning};

@@ -152,6 +152,7 @@ fn directory<R: rawzip::ReaderAt>(archive: &ZipArchive<R>) -> Result<Directory, 
                 directory.folder = name.strip_suffix("metadata").map(Into::into)
             }
             "meta.json" => directory.is_saleae = true,
+            // No piece has such a long name; this limits the memory.
             name if name.starts_with("analog-") || name.len() > 64 => {}
             _ => directory.pieces.push((name, packed)),
         }

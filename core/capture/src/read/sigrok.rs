@@ -90,8 +90,7 @@ impl Samples {
         if let RowClock::FixedPeriod { units_per_s, units_per_sample } = columns.clock
             && !time.is_multiple_of(units_per_sample)
         {
-            // The times are not sums of truncated periods after all, so the rows that were read get their original
-            // times.
+            // The times are not sums of truncated periods after all, so the rows so far get their original times.
             columns.clock = RowClock::TruncatedTime { units_per_s };
             let (rate, first) = (self.head.rate_hz().unwrap_or(1), columns.first);
             let start = sample_of_truncated(first * units_per_sample, units_per_s, rate);

@@ -3,7 +3,6 @@
 use super::{Edge, Fault, FittedWord, Format, fit_words};
 use std::collections::BTreeSet;
 
-/// Usual bit rates.
 const USUAL: [u32; 27] = [
     300, 1200, 2400, 4800, 9600, 14_400, 19_200, 28_800, 31_250, 38_400, 57_600, 74_880, 76_800, 115_200,
     125_000, 128_000, 230_400, 250_000, 256_000, 460_800, 500_000, 576_000, 921_600, 1_000_000, 1_500_000,
@@ -232,7 +231,6 @@ fn is_too_coarse(edges: &[Edge], format: Format, best: Option<Quality>) -> bool 
     )
 }
 
-/// Decoded bytes and their faults.
 #[derive(PartialEq)]
 struct Words(Vec<(u8, Option<Fault>)>);
 
@@ -256,8 +254,7 @@ fn words(edges: &[Edge], bit: f64, format: Format) -> Words {
     Words(words)
 }
 
-/// Usual rates that fit about as well as the best bit time, with different bytes. A few different bytes may fit
-/// several rates, so all usual rates are tried.
+/// Usual rates that fit about as well as the best bit time, with different bytes.
 fn fitting_usual(edges: &[Edge], format: Format, hz: f64, best: &Quality) -> Vec<(Quality, u32)> {
     let tried = edges.get(..TRIED_EDGES).unwrap_or(edges);
     let fit = |rate: &u32| {

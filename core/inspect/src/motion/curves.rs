@@ -128,8 +128,7 @@ impl IdealLine {
     }
 }
 
-/// The ideal motion as lines for a chart: each smooth interval is followed with several points per column. A column
-/// with too many intervals gets its minimum and maximum.
+/// Smooth intervals have several points per column; a column with too many intervals has its minimum and maximum.
 pub fn ideal_line(plan: &AxisPlan, zero_s: f64, window: Window) -> IdealLine {
     let breakpoints = Breakpoints::of(plan);
     let mut line = IdealLine::default();

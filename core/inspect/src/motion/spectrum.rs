@@ -95,8 +95,7 @@ impl Spectrum {
         Some(Self::of_position(window, amplitudes(&samples, order.into())))
     }
 
-    /// The spectrum of pulses (time in s, +1 right or -1 left) in any order. Pulses outside the window are moved by
-    /// whole periods.
+    /// Pulses (time in s, +1 right or -1 left) in any order; those outside the window are moved by whole periods.
     pub fn of_pulses(pulses: &[(f64, i8)], window: AnalysisWindow, order: u16) -> Self {
         let phases = pulses
             .iter()

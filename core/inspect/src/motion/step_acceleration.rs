@@ -1,5 +1,4 @@
-//! Acceleration of steps without a plan: from two groups of eight steps, because rounding to cycles dominates between
-//! single steps.
+//! Acceleration of steps without a plan, over eight steps: between single steps rounding to cycles dominates.
 
 use stepscope_peripheral::trace::Step;
 

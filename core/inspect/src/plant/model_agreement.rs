@@ -79,8 +79,7 @@ pub struct Agreement {
     pub why: Option<String>,
 }
 
-/// Compares the plant's motor of `channel` with the curve. `overload` is the cycle in which a protection stopped the
-/// controller.
+/// Compares the plant's motor with the curve. `overload` is the cycle in which a protection stopped the controller.
 pub fn agreement(
     machine: &Machine,
     demand: &Demand,

@@ -114,8 +114,7 @@ impl Acceleration {
         self.any = max_of(self.any, found);
     }
 
-    /// The maximum for intervals that differ by up to `spread` cycles. A slow change shows even where rounding
-    /// explains each single one.
+    /// For intervals that differ by up to `spread` cycles: a slow change shows even if rounding explains each one.
     fn max(&self, spread: u64) -> Option<f64> {
         if self.certain == Some(0.0) && spread > ROUNDING { self.any } else { self.certain }
     }

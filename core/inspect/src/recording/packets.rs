@@ -1,5 +1,4 @@
-//! Packets on recorded lines, in the order of time. Frames (DESIGN A6) end at their delimiter and have a CRC; other
-//! packets end at a gap (A5).
+//! Packets on recorded lines. Frames (DESIGN A6) end at their delimiter and have a CRC; others end at a gap (A5).
 
 use super::report::{LineReport, Report};
 use super::serial::{GAP_BITS, Guess, line_name};

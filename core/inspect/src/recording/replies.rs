@@ -1,5 +1,4 @@
-//! Recorded replies on TX, encoded as bytes to transfer them between workers of the page. Each reply has its start, end,
-//! length and controller, then its bytes.
+//! Recorded replies on TX as bytes for the page's workers: each has start, end, length and controller, then its bytes.
 
 use super::packets::{Found, Line};
 use super::{report::Report, serial::line_name};

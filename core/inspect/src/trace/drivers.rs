@@ -54,9 +54,8 @@ pub const DRV8825: DataSheet = DataSheet {
     rules: times([1900, 1900, 650, 650, 650]),
 };
 
-/// Trinamic TMC2209, data sheet revision 1.09, "STEP/DIR interface": t_SH and t_SL max(t_FILTSD, t_CLK + 20 ns),
-/// t_DSU and t_DSH 20 ns. Its oscillator has at least 11.5 MHz, so 87 + 20 ns; 270 ns on an external clock of 4 MHz.
-/// No time from ENN.
+/// Trinamic TMC2209, data sheet revision 1.09, "STEP/DIR interface": t_SH and t_SL max(t_FILTSD, t_CLK + 20 ns), t_DSU
+/// and t_DSH 20 ns. Its oscillator has at least 11.5 MHz, so 87 + 20 ns; 270 ns at 4 MHz. No time from ENN.
 pub const TMC2209: DataSheet = DataSheet {
     model: DriverModel::Tmc2209,
     id: "tmc2209",

@@ -48,8 +48,7 @@ pub struct FaultSweep {
 }
 
 impl FaultSweep {
-    /// A sweep whose seeds replace the noise and the receiver rates of `base`. Errors: every problem, and a source without
-    /// ticks.
+    /// Seeds replace the noise and the receiver rates of `base`. Errors: every problem, and a source without ticks.
     pub fn new(base: Scenario) -> Result<Self, Vec<Problem>> {
         let experiment = Experiment::new(&base)?;
         if (0..experiment.controllers()).all(|index| experiment.ticks_of(index).is_empty()) {

@@ -97,8 +97,7 @@ pub struct PowerCuts {
 }
 
 impl PowerCuts {
-    /// At most `count` cycles of a run that ends before `end`: all cycles, or random ones, of which about half are during
-    /// writes of the memory.
+    /// All cycles before `end`, or `count` random ones, of which about half are during writes of the memory.
     pub fn of(checked: &CheckedSetup, end: Instant, count: usize, seed: u64) -> Self {
         let (length, writes) = byte_writes(checked, end);
         let cycles = if length <= count as u64 {

@@ -17,8 +17,7 @@ pub(crate) struct Bus {
     host: Option<FramedHost>,
     /// Invariant: one at least.
     nodes: Vec<Node>,
-    /// The current window: its first cycle and the first one after it.
-    /// Invariant: `start <= until`; both only rise.
+    /// The current window: its first cycle and the first one after it. Invariant: `start <= until`; both only rise.
     start: Instant,
     until: Instant,
 }
@@ -123,8 +122,7 @@ impl Bus {
         driven.fold(self.line.next_change().min(host).min(end), Instant::min)
     }
 
-    /// Runs to cycle `end`, or with [`Instant::NEVER`] until no event follows, with a sink per controller. Stops early when a
-    /// sink pauses.
+    /// Runs to cycle `end`, or with [`Instant::NEVER`] until no event follows. Stops early when a sink pauses.
     pub(crate) fn run(&mut self, end: Instant, sinks: &mut [impl Sink]) {
         while self.start < end {
             if self.start == self.until {

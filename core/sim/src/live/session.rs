@@ -106,8 +106,7 @@ fn blank(scenario: &Scenario) -> Scenario {
 }
 
 impl Session {
-    /// Starts the controllers of a scenario and ignores its sends, presses, length, host and noise. Errors: every problem, and
-    /// segments, which have no line.
+    /// Ignores sends, presses, length, host and noise. Errors: every problem, and segments, which have no line.
     pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
         if scenario.source.uses_segments() {
             let detail = "segments run without a serial line; use ticks, packets or a line script";

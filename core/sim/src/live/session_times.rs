@@ -1,5 +1,4 @@
-//! `NAME.session.json`, next to a session's recording: wall-clock times (LIVE H5). The recording itself is a scenario, which
-//! refuses unknown fields.
+//! `NAME.session.json`: a session's wall-clock times (LIVE H5); a scenario would refuse them as unknown fields.
 
 use crate::live::session::{Recording, ReplyByte, SessionClock};
 use alloc::{format, string::String, vec::Vec};

@@ -70,8 +70,7 @@ impl Twin {
         })
     }
 
-    /// Passes a frame of the host to the model, sent from cycle `now` on. `device` has the reports of the addressed device, which
-    /// has `channels`.
+    /// Passes a frame, sent from cycle `now` on, to the model. `device` has the reports of the device, with `channels`.
     pub fn send(&mut self, bytes: &[u8], now: Instant, (channels, device): (u8, &Known)) {
         let bytes = renumbered(bytes, device.opening.map_or(0, |opening| opening.expected_seq), channels);
         self.advance(now);

@@ -243,8 +243,7 @@ impl AttachedPlants {
         self.apply_feedback(run, Some(idle_since), sinks, observers);
     }
 
-    /// Applies the feedback of the plants in the cycle just run, and finishes at the end. `first_idle` is the first idle
-    /// cycle if the run goes clock by clock.
+    /// Applies the plants' feedback, and finishes at the end. `first_idle` is that of a run clock by clock.
     fn apply_feedback(
         &mut self,
         run: &mut Controllers,

@@ -70,9 +70,7 @@ pub struct LiveDevice {
 #[wasm_bindgen]
 impl LiveDevice {
     /// The controllers of a scenario. Above a lag of `lag_ms` the clock is set back. `unix_ms` is the start.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or its controllers have no line.
+    /// Errors: if the scenario has problems, or its controllers have no line.
     #[wasm_bindgen(constructor)]
     pub fn new(json: &str, lag_ms: u32, unix_ms: f64) -> Result<LiveDevice, JsError> {
         let session = Session::new(&read(json)?).map_err(|problems| listed(&problems))?;
@@ -91,7 +89,6 @@ impl LiveDevice {
         })
     }
 
-    /// Bit rate.
     pub fn baud(&self) -> u32 {
         self.session.experiment().baud()
     }

@@ -49,7 +49,6 @@ struct State {
     naks: u64,
 }
 
-/// Final state of a device or a model.
 #[derive(Serialize)]
 struct End {
     state: &'static str,
@@ -58,7 +57,6 @@ struct End {
     went: Option<Vec<i32>>,
 }
 
-/// Final states of a device and its model.
 #[derive(Serialize)]
 struct EndPair {
     controller: usize,
@@ -107,9 +105,7 @@ pub struct LiveHost {
 #[wasm_bindgen]
 impl LiveHost {
     /// The host of a scenario. Replies may be `slack_ms` late.
-    ///
-    /// # Errors
-    /// If the scenario has problems, or a device cannot confirm it.
+    /// Errors: if the scenario has problems, or a device cannot confirm it.
     #[wasm_bindgen(constructor)]
     pub fn new(json: &str, slack_ms: f64) -> Result<LiveHost, JsError> {
         let scenario = for_real_line(read(json)?);
@@ -139,7 +135,6 @@ impl LiveHost {
         })
     }
 
-    /// Bit rate.
     pub fn baud(&self) -> u32 {
         self.experiment.baud()
     }
@@ -153,7 +148,6 @@ impl LiveHost {
         self.host.known().map(|(job, _)| margin(job)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether it has ended.
     pub fn is_over(&self) -> bool {
         self.host.is_over()
     }
@@ -195,7 +189,6 @@ impl LiveHost {
         }
     }
 
-    /// Receives bytes.
     pub fn receive(&mut self, bytes: &[u8], ms: f64) {
         let now = self.now(ms);
         // A reply implies that the frame was sent, even if the system reports that later.

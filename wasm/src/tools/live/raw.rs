@@ -41,9 +41,7 @@ pub struct LiveRawHost {
 #[wasm_bindgen]
 impl LiveRawHost {
     /// The host of a scenario's packets, sent 200 ms ahead.
-    ///
-    /// # Errors
-    /// If the scenario has problems, no ticks, or a queue that is too short for the lead.
+    /// Errors: if the scenario has problems, no ticks, or a queue that is too short for the lead.
     #[wasm_bindgen(constructor)]
     pub fn new(json: &str) -> Result<LiveRawHost, JsError> {
         let scenario = for_real_line(read(json)?);
@@ -62,7 +60,6 @@ impl LiveRawHost {
         Ok(Self { baud: experiment.baud(), host })
     }
 
-    /// Bit rate.
     pub fn baud(&self) -> u32 {
         self.baud
     }
@@ -82,7 +79,6 @@ impl LiveRawHost {
         self.host.packet(nanos(ms)).map(<[u8]>::to_vec)
     }
 
-    /// The packet was written.
     pub fn written(&mut self, ms: f64) {
         self.host.written(nanos(ms));
     }

@@ -33,8 +33,7 @@ pub(super) fn line(frame: &Frame, x: &[f64], y: &[f64]) -> Vec<Vec<Point>> {
         .collect()
 }
 
-/// Lines through the minimum and maximum of each column, separated by gaps. If they differ by less than a pixel they are
-/// one point.
+/// Lines through the minimum and maximum of each column, with gaps; one point if they differ by less than a pixel.
 pub(super) fn band(frame: &Frame, x: &[f64], min: &[f64], max: &[f64]) -> Vec<Vec<Point>> {
     let mut lines: Vec<Vec<Point>> = vec![Vec::new()];
     for ((x, min), max) in x.iter().zip(min).zip(max) {

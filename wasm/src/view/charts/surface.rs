@@ -13,7 +13,6 @@ pub(crate) enum Surface<'a> {
     Svg(SVGBackend<'a>),
 }
 
-/// The error of a backend.
 #[derive(Debug)]
 pub(crate) struct Failed(String);
 

@@ -85,8 +85,7 @@ pub(super) fn by_position(plan: &AxisPlan, due: &[Step], actual: &[Step], hz: f6
     (errors.ended(), stray)
 }
 
-/// Travel of the ideal motion in steps. Both times are one cycle earlier, because a table's curve ends with a jump of
-/// half a step.
+/// Travel of the ideal motion, a cycle earlier, because a table's curve ends with a jump of half a step.
 fn distance(plan: &AxisPlan, from_s: f64, to_s: f64, hz: f64) -> f64 {
     plan.position(to_s - 1.0 / hz) - plan.position(from_s - 1.0 / hz)
 }

@@ -95,8 +95,7 @@ impl Machine {
         self.load_n_m * MILLI
     }
 
-    /// Maximum torque in mN*m of the driver at a rate in steps/s. Below 0 the motor brakes at any current, so it
-    /// cannot stay in step.
+    /// In mN*m, at a rate in steps/s. Below 0 the motor brakes at any current, so it cannot stay in step.
     pub fn available_mn_m(&self, rate: f64) -> f64 {
         let speed = libm::fabs(rate) * self.step_rad;
         let back_emf = self.constant * speed;

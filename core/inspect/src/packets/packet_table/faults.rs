@@ -22,8 +22,7 @@ pub struct FirstFault {
 }
 
 impl PacketTable<'_> {
-    /// Why row `index` was dropped or refused, such as `3 of 4 bytes, then 45 bit times of silence`. Empty if
-    /// [`Row::outcome`](super::Row::outcome) says it all.
+    /// Such as `3 of 4 bytes, then 45 bit times of silence`; empty if [`Row::outcome`](super::Row::outcome) says it all.
     pub fn why(&self, index: usize) -> String {
         let Some(row) = self.logged(index) else { return String::new() };
         let bytes = self.bytes(index);

@@ -17,8 +17,7 @@ use stepscope_scenario::{END_OF_TIME, Host as Settings};
 
 /// Bit times from the end of an exchange to the next frame: DE has fallen by then, whatever the controller's clock.
 const PAUSE_BITS: u64 = 10;
-/// Default time-out in bit times, for a reply of [`NAK_LEN`] bytes, which takes 191; a longer one has ten more per
-/// additional byte.
+/// Default time-out for a reply of [`NAK_LEN`] bytes, which takes 191 bit times; each additional byte adds ten.
 const TIMEOUT_BITS: u64 = 256;
 // The first start bit comes 11 bit times after the frame, and each byte has ten.
 const _: () = assert!(TIMEOUT_BITS > 11 + BYTE_BITS * NAK_LEN as u64);
@@ -105,8 +104,7 @@ impl Conversation {
         self
     }
 
-    /// Begins each job with a tick without steps, for a real line. After that tick, a reset of the controller is visible in
-    /// its sequence number and its count of ticks.
+    /// Begins each job with a tick without steps: after it, a reset of a real controller shows in its counts.
     pub fn with_opening_tick(mut self) -> Self {
         self.peers.iter_mut().for_each(|peer| peer.opening_tick = true);
         self
@@ -158,8 +156,7 @@ impl Conversation {
         }
     }
 
-    /// The cycle of the next [`Self::poll`] if no byte is received before; [`Instant::NEVER`] while a frame is being sent and
-    /// at the end.
+    /// The cycle of the next [`Self::poll`] unless a byte comes; [`Instant::NEVER`] while a frame is sent and at the end.
     pub const fn deadline(&self) -> Instant {
         match self.phase {
             Phase::Pausing { until } | Phase::Waiting { until, .. } => until,
@@ -230,8 +227,7 @@ impl Conversation {
         }
     }
 
-    /// Stops all unfinished jobs: after the pending exchange each controller gets STOP until it acknowledges, then STATUS and
-    /// POSITIONS.
+    /// Stops all unfinished jobs: each controller gets STOP until it acknowledges, then STATUS and POSITIONS.
     pub fn stop(&mut self, now: Instant) {
         self.peers.iter_mut().filter(|peer| peer.is_open()).for_each(|peer| peer.stop(now));
         if let Phase::Pausing { .. } = self.phase {

@@ -58,8 +58,7 @@ impl Presses {
         own.map(|(_, input)| to_panel_input(*input)).collect()
     }
 
-    /// Enters a change in the first future cycle in which its input has none, and returns that cycle. It cancels a
-    /// later level of the same input.
+    /// Enters a change in the first future cycle in which its input has none; cancels a later level of that input.
     pub(super) fn enter(
         &mut self,
         machine: &mut StandAlone,
