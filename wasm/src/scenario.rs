@@ -1,9 +1,10 @@
-//! A scenario that is read, validated and planned once, for runs, links and the study.
+//! Scenarios for runs, links and the study.
 
 use stepscope_core::sim::{self, Experiment};
 use stepscope_core::{peripheral::config::Config, scenario::Problem};
 use wasm_bindgen::prelude::*;
 
+/// A scenario that is read, validated and planned once.
 #[wasm_bindgen]
 pub struct ValidatedScenario(pub(crate) sim::ValidatedScenario);
 

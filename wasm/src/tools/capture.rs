@@ -224,6 +224,7 @@ impl CaptureFile {
         Self { capture, error: error.map(|error| error.to_string()), map, loaded: None, options: None }
     }
 
+    /// A sample, by its name.
     pub fn sample(id: &str) -> Option<Self> {
         let bytes = samples::sample(id)?.bytes;
         let Reading { capture, error } = read(io::Cursor::new(bytes), &Limits::default(), &mut |_| true);

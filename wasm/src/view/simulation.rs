@@ -163,6 +163,7 @@ impl Simulation {
         self.replies = Some(bytes);
     }
 
+    /// Selects a controller, if it exists.
     pub fn select(&mut self, controller: u32) {
         if (controller as usize) < self.recordings.len() {
             self.selected = controller as usize;

@@ -89,6 +89,7 @@ impl LiveDevice {
         })
     }
 
+    /// Bit rate.
     pub fn baud(&self) -> u32 {
         self.session.experiment().baud()
     }

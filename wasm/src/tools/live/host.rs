@@ -135,6 +135,7 @@ impl LiveHost {
         })
     }
 
+    /// Bit rate.
     pub fn baud(&self) -> u32 {
         self.experiment.baud()
     }
@@ -148,6 +149,7 @@ impl LiveHost {
         self.host.known().map(|(job, _)| margin(job)).fold(f64::INFINITY, f64::min)
     }
 
+    /// Whether it has ended.
     pub fn is_over(&self) -> bool {
         self.host.is_over()
     }
@@ -189,6 +191,7 @@ impl LiveHost {
         }
     }
 
+    /// Receives bytes.
     pub fn receive(&mut self, bytes: &[u8], ms: f64) {
         let now = self.now(ms);
         // A reply implies that the frame was sent, even if the system reports that later.

@@ -60,6 +60,7 @@ impl LiveRawHost {
         Ok(Self { baud: experiment.baud(), host })
     }
 
+    /// Bit rate.
     pub fn baud(&self) -> u32 {
         self.baud
     }
@@ -79,6 +80,7 @@ impl LiveRawHost {
         self.host.packet(nanos(ms)).map(<[u8]>::to_vec)
     }
 
+    /// The packet was written.
     pub fn written(&mut self, ms: f64) {
         self.host.written(nanos(ms));
     }
