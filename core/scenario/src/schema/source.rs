@@ -60,7 +60,7 @@ pub enum MotionEngine {
 
 words! {
     MotionEngine {
-        Ticks = "ticks", "ticks (packets from the host)": "the host sends the number of steps of each tick";
+        Ticks = "ticks", "ticks": "the host sends the number of steps of each tick";
         Segments = "segments", "step table (timer interrupt)": "nothing is sent; each step comes in its exact cycle";
     }
 }
