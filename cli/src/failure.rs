@@ -4,7 +4,7 @@ use crate::{suggest, terminal::Escaped};
 use std::path::{Path, PathBuf};
 use std::{fmt, io, process::ExitCode};
 use stepscope_core::inspect::export::vcd::TooCoarse;
-use stepscope_core::scenario::{Cause, MAX_TEXT_BYTES, Problem, ValueError, link::LinkError};
+use stepscope_core::scenario::{Cause, MAX_TEXT_BYTES, Problem, Problems, ValueError, link::LinkError};
 
 pub(crate) const INTERRUPTED: u8 = 130;
 
@@ -23,7 +23,7 @@ pub(crate) enum Failure {
     Invalid(PathBuf, String),
     /// The file, and the maximum bytes.
     TooLong(PathBuf, u64),
-    Scenario(PathBuf, Vec<Problem>),
+    Scenario(PathBuf, Problems),
     Index(PathBuf, Index),
     Timescale(TooCoarse),
     Link(LinkError),
@@ -120,7 +120,7 @@ impl Failure {
 pub(crate) fn no_plant(path: &Path) -> Failure {
     let detail = "the scenario has no plant, so there are no motors to simulate; add \"plant\": {}";
     let problem = Problem::new("plant", ValueError::Conflict { detail });
-    Failure::Scenario(path.to_owned(), vec![problem])
+    Failure::Scenario(path.to_owned(), problem.into())
 }
 
 /// The problem; for an unknown field, with the most similar name.

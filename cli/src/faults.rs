@@ -12,7 +12,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::{num::NonZero, ops::Range};
 use stepscope_core::peripheral::config::Protocol;
-use stepscope_core::scenario::{Problem, Scenario, link};
+use stepscope_core::scenario::{Problems, Scenario, link};
 use stepscope_core::sim::fault_sweep::{FaultSweep, Tally};
 
 const BATCH: u64 = 64;
@@ -162,20 +162,20 @@ fn run(
     seeds: &Range<u64>,
     threads: Option<NonZero<usize>>,
     progress: &mut Progress,
-) -> io::Result<Result<Report, Vec<Problem>>> {
+) -> io::Result<Result<Report, Problems>> {
     let batches = (seeds.end - seeds.start).div_ceil(BATCH);
     let make = |index| {
         let from = seeds.start + index * BATCH;
         batch(sweep, from..seeds.end.min(from + BATCH))
     };
-    parallel::sum(batches, threads, progress, make, |whole: Result<Report, Vec<Problem>>, report| {
+    parallel::sum(batches, threads, progress, make, |whole: Result<Report, Problems>, report| {
         let mut whole = whole?;
         whole.join(report?);
         Ok(whole)
     })
 }
 
-fn batch(sweep: &FaultSweep, seeds: Range<u64>) -> Result<Report, Vec<Problem>> {
+fn batch(sweep: &FaultSweep, seeds: Range<u64>) -> Result<Report, Problems> {
     let mut report = Report::default();
     for seed in seeds {
         report.add(seed as u32, sweep.run(seed as u32)?);

@@ -19,7 +19,7 @@ use stepscope_core::{
         rates::{RAMP_STEPS_S2, pulls, resonance as resonance_of, search, starts},
         settling::StepResponse,
     },
-    scenario::{Cause, Problem, Scenario},
+    scenario::{Cause, Problem, Problems, Scenario},
     sim::Experiment,
 };
 
@@ -140,7 +140,9 @@ fn in_parallel<T: Send>(
     progress.end(format_args!("{count} {unit}"), &[]);
     results.into_iter().collect::<Result<_, _>>().map_err(|refused| {
         let problems = refused.into_iter().map(|refused| Problem::new("plant", Cause::Plant(refused)));
-        Failure::Scenario(common.scenario.clone(), problems.collect())
+        let problems = Problems::new(problems.collect());
+        let refused = |problems| Failure::Scenario(common.scenario.clone(), problems);
+        problems.map_or_else(|| no_plant(&common.scenario), refused)
     })
 }
 

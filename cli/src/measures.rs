@@ -38,7 +38,7 @@ pub(crate) fn measures(arguments: &Arguments) -> Result<(), Failure> {
     let plan = plan.ok_or_else(|| Failure::index(path, Numbered::Axes, axis, count, false))?;
     // The recording has all axes' steps.
     let plans = (0..experiment.controllers()).flat_map(|controller| experiment.plans_of(controller));
-    within_bounds(plans).map_err(|cause| wrong(vec![Problem::new("source.motion", cause)]))?;
+    within_bounds(plans).map_err(|cause| wrong(Problem::new("source.motion", cause).into()))?;
     let recording = run_recording::of(path, &experiment)?;
     // There are at most 16 axes.
     let channel = axis as u8;

@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde_json::json;
 use std::io::{self, Write};
-use std::{borrow::Cow, path::Path, rc::Rc};
+use std::{borrow::Cow, path::Path, sync::Arc};
 use stepscope_core::inspect::plant::motors::{self, DRIVES, DriveSheet, MOTORS, MotorSheet};
 use stepscope_core::scenario::{Compact, Scenario};
 use stepscope_core::sim::Experiment;
@@ -73,7 +73,7 @@ fn check_plant(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
 
 impl MotorReplacement {
     /// The scenario must have a plant; `-` is standard input.
-    pub(crate) fn validated(&self, path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
+    pub(crate) fn validated(&self, path: &Path) -> Result<(Arc<Scenario>, Arc<Experiment>), Failure> {
         if self.motor.is_none() && self.motor_driver.is_none() {
             return scenarios::validated_after(path, |scenario| check_plant(path, scenario));
         }
@@ -87,7 +87,7 @@ impl MotorReplacement {
         }
         let experiment =
             Experiment::new(&scenario).map_err(|problems| Failure::Scenario(path.to_owned(), problems))?;
-        Ok((Rc::new(scenario), Rc::new(experiment)))
+        Ok((Arc::new(scenario), Arc::new(experiment)))
     }
 }
 

@@ -104,7 +104,7 @@ pub(crate) fn powercut(arguments: &Arguments) -> Result<(), Failure> {
 /// The compared memories: both policies without a buffer, `power_loss` also with one that is a cycle too short and with
 /// a sufficient one, and both with the buffer of controller 0.
 fn memories(setup: &CheckedSetup) -> Vec<MemoryCase> {
-    let record_cycles = |parameters: &std::rc::Rc<Parameters>| {
+    let record_cycles = |parameters: &std::sync::Arc<Parameters>| {
         BYTE_TIMES * u64::from(parameters.memory.byte_write_cycles) - 1
     };
     let sufficient = setup.controllers().iter().map(record_cycles).max().unwrap_or(0);

@@ -122,7 +122,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let finished = simulate(&experiment, &mut controllers, &mut progress);
     if let Some(work) = finished.stand_alone().and_then(StandAlone::too_many_groups) {
         let at = format!("source.standalone[{}].groups", work.controller);
-        return Err(Failure::Scenario(path.clone(), vec![Problem::new(at, Cause::TooManyGroups(work))]));
+        return Err(Failure::Scenario(path.clone(), Problem::new(at, Cause::TooManyGroups(work)).into()));
     }
     for (path, file) in controllers.iter_mut().flat_map(|controller| controller.files.drain(..)) {
         file.finish(&experiment, &finished).map_err(|error| Failure::File(path, error))?;

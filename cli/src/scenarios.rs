@@ -6,24 +6,24 @@ use clap::Args;
 use serde_json::json;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::sync::Arc;
 use stepscope_core::capture::samples::{SAMPLES, sample};
 use stepscope_core::scenario::presets::{
     CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset,
 };
-use stepscope_core::scenario::{MAX_TEXT_BYTES, Problem, Scenario, ValueError, link};
+use stepscope_core::scenario::{MAX_TEXT_BYTES, Problems, Scenario, link};
 use stepscope_core::sim::Experiment;
 
 /// Checks types only; `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
     match Scenario::from_json_lenient(&scenario_text(path)?) {
-        (scenario, problems) if problems.is_empty() => Ok(scenario),
-        (_, problems) => Err(Failure::Scenario(path.to_owned(), problems)),
+        (scenario, None) => Ok(scenario),
+        (_, Some(problems)) => Err(Failure::Scenario(path.to_owned(), problems)),
     }
 }
 
 /// A validated scenario and its experiment; `-` is standard input.
-pub(crate) fn validated(path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
+pub(crate) fn validated(path: &Path) -> Result<(Arc<Scenario>, Arc<Experiment>), Failure> {
     validated_after(path, |_| Ok(()))
 }
 
@@ -31,19 +31,16 @@ pub(crate) fn validated(path: &Path) -> Result<(Rc<Scenario>, Rc<Experiment>), F
 pub(crate) fn validated_after(
     path: &Path,
     check: impl FnOnce(&Scenario) -> Result<(), Failure>,
-) -> Result<(Rc<Scenario>, Rc<Experiment>), Failure> {
+) -> Result<(Arc<Scenario>, Arc<Experiment>), Failure> {
     let (scenario, unreadable) = Scenario::from_json_lenient(&scenario_text(path)?);
-    if unreadable.is_empty() {
+    if unreadable.is_none() {
         check(&scenario)?;
     }
     let experiment = Experiment::from_partial(&scenario, unreadable);
-    let wrong = |problems: Vec<Problem>| Failure::Scenario(path.to_owned(), problems);
+    let wrong = |problems: Problems| Failure::Scenario(path.to_owned(), problems);
     let experiment = experiment.map_err(wrong)?;
-    if experiment.jogs_without_end() {
-        let detail = "a jog button stays pressed, so the run has no end; set run_cycles, or release the button in inputs";
-        return Err(wrong(vec![Problem::new("run_cycles", ValueError::Conflict { detail })]));
-    }
-    Ok((Rc::new(scenario), Rc::new(experiment)))
+    experiment.check_has_end().map_err(wrong)?;
+    Ok((Arc::new(scenario), Arc::new(experiment)))
 }
 
 fn scenario_text(path: &Path) -> Result<String, Failure> {

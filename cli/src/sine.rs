@@ -172,7 +172,7 @@ fn has_sines(path: &Path, scenario: &Scenario, only: Option<usize>) -> Result<()
     }
     let detail = "no move is a sine of segments; use a move sine_segments, as in the preset sine-2022-d00054";
     let problem = Problem::new("source", ValueError::Conflict { detail });
-    Err(Failure::Scenario(path.to_owned(), vec![problem]))
+    Err(Failure::Scenario(path.to_owned(), problem.into()))
 }
 
 /// The segments of a quarter of each sine; the other quarters follow by symmetry (DESIGN B5).

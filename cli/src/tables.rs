@@ -262,7 +262,7 @@ impl Axes {
             return Failure::Invalid(self.path.clone(), cause.to_string());
         }
         let problem = Problem::new(format!("source.motion.axes[{axis}]"), cause);
-        Failure::Scenario(self.path.clone(), vec![problem])
+        Failure::Scenario(self.path.clone(), problem.into())
     }
 }
 
@@ -278,7 +278,7 @@ fn steps_of_run(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledSte
     }
     if all.is_empty() {
         let detail = "no channel has steps, so there is no table; use a scenario with steps, or --steps";
-        return Err(wrong(vec![Problem::new("source", ValueError::Conflict { detail })]));
+        return Err(wrong(Problem::new("source", ValueError::Conflict { detail }).into()));
     }
     Ok(all)
 }

@@ -87,9 +87,8 @@ fn parse_rules(found: Value) -> Result<TimingRules, String> {
     let inner = found.get("driver_timing").cloned().unwrap_or(found);
     let is_whole = inner.get("rules").is_some() || inner.get("preset").is_some();
     let timing = if is_whole { inner } else { json!({ "rules": inner }) };
-    let (scenario, mut problems) =
-        Scenario::from_json_lenient(&json!({ "driver_timing": timing }).to_string());
-    problems.extend(scenario.check().err().unwrap_or_default());
+    let (scenario, unreadable) = Scenario::from_json_lenient(&json!({ "driver_timing": timing }).to_string());
+    let problems: Vec<_> = unreadable.into_iter().chain(scenario.check().err()).flatten().collect();
     match scenario.driver_timing.as_ref().filter(|_| problems.is_empty()) {
         Some(driver) => Ok(drivers::rules(driver)),
         None => {

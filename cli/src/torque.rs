@@ -72,7 +72,7 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<AxisDemand>, Fail
         let detail =
             "the axis has no motor; use --motor, or \"motor\": {} for the motor of Song, Han and Lu 2021";
         let field = format!("source.motion.axes[{}].motor", only.unwrap_or(0));
-        return Err(wrong(vec![Problem::new(field, ValueError::Conflict { detail })]));
+        return Err(wrong(Problem::new(field, ValueError::Conflict { detail }).into()));
     }
     let plans = plan_lists([("source.motion.axes".to_owned(), axes)]).map_err(of_motion).map_err(wrong)?;
     let all = axes.iter().zip(plans.into_iter().flatten()).enumerate();

@@ -3,7 +3,7 @@
 //! `cargo run -p stepscope-core --example line_script`
 
 use stepscope_core::inspect::trace::stored_run::StoredRun;
-use stepscope_core::{scenario::Problem, sim::Experiment};
+use stepscope_core::{scenario::Problems, sim::Experiment};
 
 /// Two channels, so two bytes per packet: bit 7 is the direction, the other bits are the steps. A byte takes 1388 cycles
 /// at 115200 baud and 16 MHz; the glitch holds the line low during a stop bit of the second packet.
@@ -18,7 +18,7 @@ const SCENARIO: &str = r#"{
     "line": { "glitches": [ { "start_cycle": 41200, "length_cycles": 400, "level": 0 } ] }
 }"#;
 
-fn main() -> Result<(), Vec<Problem>> {
+fn main() -> Result<(), Problems> {
     let experiment = Experiment::from_json(SCENARIO)?;
     let mut recording = StoredRun::default();
     let run = experiment.run(&mut recording);

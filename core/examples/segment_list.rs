@@ -2,7 +2,7 @@
 //!
 //! `cargo run -p stepscope-core --example segment_list`
 
-use std::rc::Rc;
+use std::sync::Arc;
 use stepscope_core::peripheral::{
     device::SegmentEngine,
     segment::{CheckedSegments, PulseTimes, Refused, Segment, SegmentList},
@@ -35,7 +35,7 @@ fn main() -> Result<(), Vec<Refused>> {
     let pulse = PulseTimes { width: Cycles(40), setup: Cycles(40), hold: Cycles(0) };
     let lists = CheckedSegments::new(pulse, vec![list], 1)?;
 
-    let mut engine = SegmentEngine::new(Rc::new(lists));
+    let mut engine = SegmentEngine::new(Arc::new(lists));
     let mut trace: Vec<Record> = Vec::new();
     engine.run(Instant::NEVER, &mut trace);
 

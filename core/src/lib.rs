@@ -5,32 +5,65 @@
 //!
 //! # Run a scenario
 //!
-//! A scenario is JSON; every field has a default. A run returns every edge with its cycle, and a digest that identifies
-//! them all.
+//! ```
+//! use stepscope_core::prelude::*;
+//!
+//! # #[cfg(feature = "sim")]
+//! fn main() -> Result<(), Problems> {
+//!     // One turn in 0.4 s by a cosine S-curve; every other field has its default.
+//!     let scenario: Scenario = r#"{ "source": { "motion": { "axes": [ { "moves": [
+//!         { "cosine": { "distance": { "deg": 360 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }"#.parse()?;
+//!     let due = step_times(&scenario, 0)?; // where the plan wants each step, in cycles from the start
+//!     let run = run(&scenario)?; // what the motors are given, to the clock cycle
+//!     println!("{} steps, digest {:016x}", due.len(), run.digest());
+//!     assert_eq!(run.positions(), [3200]);
+//!     assert_eq!(first_difference(&due, &due, Cycles(16)), None); // the second: your own step generator's
+//!     Ok(())
+//! }
+//! # #[cfg(not(feature = "sim"))]
+//! # fn main() {}
+//! ```
+//!
+//! A scenario is JSON; every field has a default. A run has every edge with its cycle, and a digest that identifies them
+//! all. A refused scenario returns all its [`Problems`](prelude), each with its path.
+//!
+//! # Get step times without a scenario
+//!
+//! ```
+//! # #[cfg(feature = "motion")]
+//! use stepscope_core::motion::mechanics::Distance;
+//! # #[cfg(feature = "motion")]
+//! use stepscope_core::motion::moves::{Axis, Cosine, Move};
+//! # #[cfg(feature = "motion")]
+//! use stepscope_core::motion::{Problems, plan_axis};
+//!
+//! # #[cfg(feature = "motion")]
+//! fn main() -> Result<(), Problems> {
+//!     let turn = Cosine { distance: Distance::Degrees(360.0), duration_s: 0.4, ramp_s: 0.15, ..Cosine::default() };
+//!     let axis = Axis { moves: vec![Move::Cosine(turn)], ..Axis::default() };
+//!     for step in plan_axis(&axis, "axis")?.due_steps(16_000_000).take(3) {
+//!         println!("cycle {}, {}", step.cycle, if step.right { "right" } else { "left" });
+//!     }
+//!     Ok(())
+//! }
+//! # #[cfg(not(feature = "motion"))]
+//! # fn main() {}
+//! ```
+//!
+//! # Run with a sink of your own
+//!
+//! An experiment is a scenario that is validated and planned once. Its edges go to any
+//! [`Sink`](peripheral::signal::Sink): a digest, a file, a check.
 //!
 //! ```
 //! # #[cfg(feature = "inspect")] {
-//! use stepscope_core::inspect::trace::stored_run::StoredRun;
-//! use stepscope_core::{peripheral::trace::steps, sim::Experiment};
+//! use stepscope_core::{inspect::trace::stored_run::StoredRun, sim::Experiment};
 //!
-//! // One turn in 0.4 s by a cosine S-curve: 3200 microsteps.
-//! let experiment = Experiment::from_json(
-//!     r#"{ "source": { "motion": { "axes": [ { "moves": [
-//!         { "cosine": { "distance": { "deg": 360 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }"#,
-//! )
-//! .expect("a valid scenario");
-//! let mut recording = StoredRun::default(); // or any Sink: a digest, a file, a check
+//! let experiment = Experiment::from_json("{}").expect("the default motion");
+//! let mut recording = StoredRun::default(); // edges, digest and packets
 //! let run = experiment.run(&mut recording);
 //! assert_eq!(run.positions()[0], 3200);
 //! assert_eq!(format!("{:016x}", recording.digest.value()), "ed82c77232a01a3a");
-//! assert_eq!(steps(&recording.trace, 0).len(), 3200); // each with its cycle
-//!
-//! // The plan has the exact time of each step, here in cycles of 16 MHz.
-//! assert_eq!(experiment.plans()[0].due_steps(16_000_000).count(), 3200);
-//!
-//! // All problems are reported at once, each with its path.
-//! let problems = Experiment::from_json(r#"{ "bus": { "slots": 200 } }"#).unwrap_err();
-//! assert_eq!(problems[0].path, "bus.slots");
 //! # }
 //! ```
 //!
@@ -82,7 +115,7 @@
 //! assert_eq!(bus.device().positions()[0], 5);
 //! ```
 //!
-//! `examples/` has four short programs: `firmware_test`, `line_script`, `segment_list` and `registers`.
+//! `examples/` has five short programs: `turn`, `firmware_test`, `line_script`, `segment_list` and `registers`.
 //!
 //! # Crates
 //!
@@ -124,7 +157,7 @@
 //!
 //! A crate's feature enables the crates to its left. `std` adds the spectrum, value change dumps and recordings; without
 //! it everything is `no_std` with `alloc`. All features are on by default; firmware tests need only
-//! `stepscope-core = { version = "0.1", default-features = false }`.
+//! `stepscope-core = { version = "0.2", default-features = false }`.
 //!
 //! # Time, positions, units
 //!
@@ -149,6 +182,10 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod first_difference;
+pub mod prelude;
+
+pub use first_difference::{Timed, first_difference};
 pub use stepscope_peripheral as peripheral;
 pub use stepscope_registers as registers;
 

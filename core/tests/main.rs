@@ -7,6 +7,7 @@ mod fault_sweep;
 mod motion;
 mod moves;
 mod plans;
+mod prelude;
 mod segments;
 mod source_code;
 mod spectrum;

@@ -2,7 +2,7 @@
 
 use crate::moves::{CLOCK_HZ, plan, ramp_shape, sane_move, short_move};
 use proptest::prelude::*;
-use std::rc::Rc;
+use std::sync::Arc;
 use stepscope_core::{
     motion::{
         AxisPlan, Profile,
@@ -227,7 +227,7 @@ proptest! {
         prop_assert!(!at_once, "what comes at once is refused");
         prop_assert_eq!(lists.steps(), plans[0].step_count() + plans[1].step_count());
         let mut trace: Vec<Record> = Vec::new();
-        let mut engine = SegmentEngine::new(Rc::new(lists));
+        let mut engine = SegmentEngine::new(Arc::new(lists));
         engine.run(Instant::NEVER, &mut trace);
         for (channel, plan) in (0..).zip(&plans) {
             let made = steps(&trace, channel);

@@ -2,7 +2,7 @@
 //! channel into one list, sorted. And all ways through the engine against each other (DESIGN A2).
 
 use proptest::prelude::*;
-use std::{collections::BTreeMap, rc::Rc};
+use std::{collections::BTreeMap, sync::Arc};
 use stepscope_core::peripheral::{
     device::{Faults, SegmentEngine},
     segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
@@ -101,7 +101,7 @@ proptest! {
         until in 1..3000_u64,
     ) {
         let (expected, positions) = model(pulse, &lists);
-        let lists = Rc::new(CheckedSegments::new(pulse, lists, 9).expect("they keep the rules"));
+        let lists = Arc::new(CheckedSegments::new(pulse, lists, 9).expect("they keep the rules"));
         let end = expected.last().map_or(0, |record| record.cycle.0);
         prop_assert_eq!(lists.end().0, end);
         prop_assert!(lists.max_records() >= expected.len() as u64);
@@ -109,12 +109,12 @@ proptest! {
             (engine.is_idle(), engine.cycles_until_event(), engine.now().0, engine.positions()) == (true, None, end + 1, positions)
         };
 
-        let (mut fast, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        let (mut fast, mut engine) = (Vec::new(), SegmentEngine::new(Arc::clone(&lists)));
         engine.run(Instant::NEVER, &mut fast);
         prop_assert_eq!(&fast, &expected);
         prop_assert!(done(&engine), "{:?}", engine);
 
-        let (mut clocked, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        let (mut clocked, mut engine) = (Vec::new(), SegmentEngine::new(Arc::clone(&lists)));
         let mut levels = Levels(0);
         while !engine.is_idle() {
             levels = engine.clock(&mut clocked);
@@ -123,7 +123,7 @@ proptest! {
         prop_assert_eq!(Some(levels), expected.last().map(|record| record.levels));
         prop_assert!(done(&engine), "{:?}", engine);
 
-        let (mut sliced, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        let (mut sliced, mut engine) = (Vec::new(), SegmentEngine::new(Arc::clone(&lists)));
         while !engine.is_idle() {
             let pause = sliced.len() + slice;
             engine.run(Instant::NEVER, &mut Slice(&mut sliced, pause));
@@ -131,7 +131,7 @@ proptest! {
         prop_assert_eq!(&sliced, &expected);
         prop_assert!(done(&engine), "{:?}", engine);
 
-        let (mut skipped, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        let (mut skipped, mut engine) = (Vec::new(), SegmentEngine::new(Arc::clone(&lists)));
         while let Some(quiet) = engine.cycles_until_event() {
             engine.advance(Cycles(quiet.0 * hurry / 100));
             engine.clock(&mut skipped);
@@ -139,7 +139,7 @@ proptest! {
         prop_assert_eq!(&skipped, &expected);
         prop_assert!(done(&engine), "{:?}", engine);
 
-        let (mut cut, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        let (mut cut, mut engine) = (Vec::new(), SegmentEngine::new(Arc::clone(&lists)));
         engine.run(Instant::RESET, &mut cut);
         prop_assert_eq!((engine.now(), cut.len()), (Instant::RESET, 0), "until reset nothing is run");
         engine.run(Instant(until), &mut cut);
@@ -161,9 +161,9 @@ proptest! {
         late in 0..=2_u64,
     ) {
         let (expected, positions) = model(pulse, &lists);
-        let lists = Rc::new(CheckedSegments::new(pulse, lists, 9).expect("they keep the rules"));
+        let lists = Arc::new(CheckedSegments::new(pulse, lists, 9).expect("they keep the rules"));
         let at = place.get(&expected).cycle.0 + late;
-        let (mut found, mut engine) = (Vec::new(), SegmentEngine::new(Rc::clone(&lists)));
+        let (mut found, mut engine) = (Vec::new(), SegmentEngine::new(Arc::clone(&lists)));
         engine.run(Instant(at), &mut found);
         engine.stop_on_overload();
         engine.stop_on_overload();
@@ -199,7 +199,7 @@ fn a_segment_of_more_steps_than_a_position_counts_to_is_counted_from_its_begin()
         |count, right| Segment::Steps { count, interval: pulse.min_interval().0 << 16, add: 0, right };
     let list = SegmentList { start: Instant(1), segments: vec![steps(u32::MAX, true), steps(5, false)] };
     let mut engine =
-        SegmentEngine::new(Rc::new(CheckedSegments::new(pulse, vec![list], 1).expect("it fits")));
+        SegmentEngine::new(Arc::new(CheckedSegments::new(pulse, vec![list], 1).expect("it fits")));
     engine.run(Instant(1 + 3 * pulse.min_interval().0 + 1), &mut Vec::new());
     assert_eq!(engine.positions()[0], 3);
 }

@@ -2,7 +2,7 @@
 
 use crate::moves::{CLOCK_HZ, plan, sane_move};
 use proptest::prelude::*;
-use std::{num::NonZeroU32, rc::Rc};
+use std::{num::NonZeroU32, sync::Arc};
 use stepscope_core::{
     motion::{
         Cause, ScheduledStep, ValueError,
@@ -49,7 +49,7 @@ fn run(list: &SegmentList) -> Vec<(u64, bool)> {
     let checked = CheckedSegments::new(PULSE, vec![list.clone()], 1);
     let checked = checked.unwrap_or_else(|refused| panic!("{refused:?}"));
     let mut trace: Vec<Record> = Vec::new();
-    SegmentEngine::new(Rc::new(checked)).run(Instant::NEVER, &mut trace);
+    SegmentEngine::new(Arc::new(checked)).run(Instant::NEVER, &mut trace);
     let mut position = 0;
     let made = steps(&trace, 0);
     made.iter()

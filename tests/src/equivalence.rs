@@ -3,7 +3,7 @@
 //!
 //! All checks panic with what differs, so that property tests, fuzz targets and kept findings share them.
 
-use std::rc::Rc;
+use std::sync::Arc;
 use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     peripheral::{
@@ -197,5 +197,5 @@ fn line(scenario: &Scenario, experiment: &Experiment) -> Line {
         level: glitch.level != 0,
     });
     let forced: Vec<ForcedLevel> = forced.collect();
-    Line::new(Rc::new(experiment.schedule().clone()), &forced, scenario.clock_hz, scenario.line.baud)
+    Line::new(Arc::new(experiment.schedule().clone()), &forced, scenario.clock_hz, scenario.line.baud)
 }

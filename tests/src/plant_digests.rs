@@ -1,7 +1,7 @@
 //! The contract's three plant digests (F10: K1 to K3) on every target: whole, and as far as a microcontroller comes in a
 //! moment.
 
-use alloc::{format, rc::Rc, string::String, vec, vec::Vec};
+use alloc::{format, string::String, sync::Arc, vec, vec::Vec};
 use stepscope_core::{
     peripheral::{
         device::SegmentEngine,
@@ -93,7 +93,7 @@ impl PlantCase {
             right: true,
         });
         let lists = vec![SegmentList { start: Instant(self.start), segments: segments.collect() }];
-        let mut engine = SegmentEngine::new(Rc::new(CheckedSegments::new(pulse, lists, 1).ok()?));
+        let mut engine = SegmentEngine::new(Arc::new(CheckedSegments::new(pulse, lists, 1).ok()?));
         let mut records: Vec<Record> = Vec::new();
         engine.run(Instant(cycles), &mut records);
         let mut plant = Plant::new(&Setup { motors: vec![self.motor.clone()], ..Setup::default() }).ok()?;

@@ -46,3 +46,8 @@ pub fn glitches(forced: &[(u64, u64, bool)]) -> Vec<Glitch> {
     };
     forced.iter().map(glitch).collect()
 }
+
+/// Positions of all channels; those of unused ones are 0.
+pub fn positions(in_use: &[i32]) -> [i32; 16] {
+    core::array::from_fn(|channel| in_use.get(channel).copied().unwrap_or(0))
+}

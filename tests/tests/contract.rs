@@ -2,12 +2,11 @@
 //! one of its speeds, the trace, positions, faults and tick count of the independent model in
 //! [`stepscope_tests::oracle`], in every mode of the driver bus.
 
-use std::rc::Rc;
-
 use proptest::prelude::*;
+use std::sync::Arc;
 use stepscope_core::{
     peripheral::{device::Device, signal::Record, trace::Digest, units::Cycles, wire},
-    scenario::{Hex, Line, LineScript, Packets, Problem, Scenario, Source},
+    scenario::{Hex, Line, LineScript, Packets, Problems, Scenario, Source},
     sim::{Experiment, Run},
 };
 use stepscope_tests::{
@@ -36,7 +35,7 @@ fn experiment(
     config: &oracle::Config,
     input: &oracle::Input,
     cycles: Option<u64>,
-) -> Result<Experiment, Vec<Problem>> {
+) -> Result<Experiment, Problems> {
     let sends = translate::sends(&input.sends);
     let mut scenario = scenario(config, &input.forced, Source::Line(LineScript { sends }));
     scenario.run_cycles = cycles;
@@ -47,7 +46,7 @@ fn experiment(
 fn outcome(device: &Device, trace: &[Record]) -> oracle::Run {
     oracle::Run {
         trace: trace.iter().map(|record| (record.cycle.0, record.levels.0)).collect(),
-        positions: device.positions(),
+        positions: translate::positions(device.positions()),
         faults: device.faults().bits(),
         ticks_done: device.ticks_done(),
         ..oracle::Run::default()
@@ -95,7 +94,7 @@ fn line(experiment: &Experiment, config: &oracle::Config, input: &oracle::Input)
         })
         .collect();
     wire::Line::new(
-        Rc::new(experiment.schedule().clone()),
+        Arc::new(experiment.schedule().clone()),
         &forced,
         config.clock_hz as u32,
         config.baud as u32,

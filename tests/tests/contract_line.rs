@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use stepscope_core::{
     peripheral::{config::Protocol, protocol::State, signal::Record},
     scenario::{
-        ChannelSegments, Controller, Direction, DwellSegment, Line, LineScript, Problem, Scenario, Segment,
+        ChannelSegments, Controller, Direction, DwellSegment, Line, LineScript, Problems, Scenario, Segment,
         SegmentLists, Source, StepSegment,
     },
     sim::{Experiment, Run},
@@ -17,7 +17,7 @@ use stepscope_tests::{
 };
 
 /// The same line in the core's words.
-fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experiment, Vec<Problem>> {
+fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experiment, Problems> {
     let (first, additional) = (&line[0], &line[1..]);
     let controller = |config: &oracle::Config| Controller {
         address: config.address.unwrap_or(0),
@@ -49,7 +49,7 @@ fn outcomes(run: &Run, traces: &[Vec<Record>]) -> Vec<oracle::Run> {
         let status = device.status();
         oracle::Run {
             trace: trace.iter().map(|record| (record.cycle.0, record.levels.0)).collect(),
-            positions: device.positions(),
+            positions: translate::positions(device.positions()),
             faults: device.faults().bits(),
             ticks_done: device.ticks_done(),
             expected_seq: status.map_or(0, |status| status.expected_seq),
@@ -120,7 +120,7 @@ fn compare(line: &[oracle::Config], input: &oracle::Input) -> Result<(), TestCas
 }
 
 /// The lists in the core's words.
-fn segments(case: &SegmentCase) -> Result<Experiment, Vec<Problem>> {
+fn segments(case: &SegmentCase) -> Result<Experiment, Problems> {
     let segment = |segment: &oracle::segments::Segment| match *segment {
         oracle::segments::Segment::Steps { steps, interval, add, dir } => Segment::Steps(StepSegment {
             count: steps,

@@ -2,7 +2,7 @@
 //! the frame of DESIGN A6 does that ends in the same cycle.
 
 use proptest::prelude::*;
-use std::rc::Rc;
+use std::sync::Arc;
 use stepscope_core::peripheral::wire::schedule::line_time;
 use stepscope_core::{
     peripheral::{
@@ -90,7 +90,7 @@ fn case(scenario: &Scenario, sends: &[(u64, Vec<u8>)], accesses: &[(u64, Access)
         schedule.push(Instant(start), bytes);
         start += line_time(bytes.len() as u64, scenario.clock_hz, scenario.line.baud);
     }
-    let line = Line::new(Rc::new(schedule), &[], scenario.clock_hz, scenario.line.baud);
+    let line = Line::new(Arc::new(schedule), &[], scenario.clock_hz, scenario.line.baud);
     let mut at = 0;
     let accesses = accesses.iter().map(|&(pause, access)| {
         at += pause;
@@ -216,7 +216,7 @@ fn commanded(
 ) -> (Vec<(u64, u64)>, Vec<u32>, Device) {
     let config = Config::new(scenario.clock_hz, &scenario.bus, &scenario.line.serial()).expect("it holds");
     let mut device = Device::new(&config);
-    let mut line = Line::new(Rc::default(), &[], scenario.clock_hz, scenario.line.baud);
+    let mut line = Line::new(Arc::default(), &[], scenario.clock_hz, scenario.line.baud);
     let (mut left, mut results) = (Left::default(), Vec::new());
     for &(pause, command) in commands {
         let seq = device.status().map_or(0, |status| status.expected_seq);

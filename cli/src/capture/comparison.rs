@@ -2,7 +2,7 @@
 
 use super::arguments::Arguments;
 use crate::{failure::Failure, run_recording};
-use std::{path::Path, rc::Rc};
+use std::{path::Path, sync::Arc};
 use stepscope_core::inspect::recording::events::{self, Events};
 use stepscope_core::inspect::recording::{loaded_capture::LoadedCapture, tolerance::Tolerance};
 use stepscope_core::{scenario::Scenario, sim::Experiment};
@@ -20,7 +20,7 @@ impl PlanComparison {
         arguments: &Arguments,
         recording: &LoadedCapture,
         path: &Path,
-        (scenario, experiment): &(Rc<Scenario>, Rc<Experiment>),
+        (scenario, experiment): &(Arc<Scenario>, Arc<Experiment>),
     ) -> Result<Self, Failure> {
         let run = run_recording::of(path, experiment)?;
         let recorded = recording.events(arguments.channel);

@@ -382,9 +382,7 @@ fn status(session: &Session, (clock, behind): (&SessionClock, Duration), late: &
             let queued = config.queue_depth() - status.free.min(config.queue_depth());
             text += &format!("  {} queue {queued}/{}", status.state.name(), config.queue_depth());
         }
-        let positions = device.positions();
-        let channels = usize::from(config.channels()).min(8);
-        let positions: Vec<String> = positions.iter().take(channels).map(ToString::to_string).collect();
+        let positions: Vec<String> = device.positions().iter().take(8).map(ToString::to_string).collect();
         text += &format!("  positions {}", positions.join(" "));
         let faults: Vec<String> = device.faults().names().map(|name| name.to_string()).collect();
         if !faults.is_empty() {

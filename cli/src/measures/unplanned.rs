@@ -29,7 +29,7 @@ pub(super) fn measures(
     let figures = StepFigures::of(steps.iter().copied(), clock_hz).ok_or_else(|| {
         let detail = "this channel makes no step; use another --axis";
         let problem = Problem::new("source", ValueError::Conflict { detail });
-        Failure::Scenario(arguments.scenario.clone(), vec![problem])
+        Failure::Scenario(arguments.scenario.clone(), problem.into())
     })?;
     let spectra = Spectra::of(scenario, None, &Pulses::recorded(own, &steps, clock_hz));
     let rows = rows(&figures, spectra.actual.as_ref()).map_err(Failure::output)?;

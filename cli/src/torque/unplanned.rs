@@ -10,7 +10,7 @@ use stepscope_core::{inspect::motion::torque::Machine, peripheral::trace::steps,
 pub(super) fn demands(arguments: &Arguments, scenario: &Scenario) -> Result<Vec<AxisDemand>, Failure> {
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
-    let refused = |field, detail| wrong(vec![Problem::new(field, ValueError::Conflict { detail })]);
+    let refused = |field, detail| wrong(Problem::new(field, ValueError::Conflict { detail }).into());
     let channels = scenario.bus.channels;
     if let Some(channel) = arguments.axis.filter(|&channel| channel >= channels.into()) {
         return Err(Failure::index(path, Numbered::AxisChannels, channel, channels.into(), true));

@@ -2,7 +2,7 @@
 
 use crate::parameters::{Parameters, Setup};
 use crate::refusal::Warned;
-use alloc::{rc::Rc, vec::Vec};
+use alloc::{sync::Arc, vec::Vec};
 use stepscope_peripheral::segment::PulseTimes;
 
 /// Validated controllers, the result of [`Setup::check`]. Cheap to clone.
@@ -11,14 +11,14 @@ pub struct CheckedSetup {
     clock_hz: u32,
     channels: u8,
     pulse: PulseTimes,
-    controllers: Rc<[Rc<Parameters>]>,
-    warned: Rc<[Warned]>,
+    controllers: Arc<[Arc<Parameters>]>,
+    warned: Arc<[Warned]>,
 }
 
 impl CheckedSetup {
     pub(crate) fn new(setup: Setup, warned: Vec<Warned>) -> Self {
         let Setup { clock_hz, channels, pulse, controllers } = setup;
-        let controllers = controllers.into_iter().map(Rc::new).collect();
+        let controllers = controllers.into_iter().map(Arc::new).collect();
         Self { clock_hz, channels, pulse, controllers, warned: warned.into() }
     }
 
@@ -44,7 +44,7 @@ impl CheckedSetup {
     }
 
     /// The parameters of each controller; the index is the channel.
-    pub fn controllers(&self) -> &[Rc<Parameters>] {
+    pub fn controllers(&self) -> &[Arc<Parameters>] {
         &self.controllers
     }
 

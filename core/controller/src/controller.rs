@@ -16,7 +16,7 @@ use crate::{
     axis::VirtualAxis, checked::CheckedSetup, eeprom::Eeprom, input::Signal, numbers::Numbers,
     parameters::Parameters, pins::Pins, script::Script,
 };
-use alloc::{rc::Rc, vec::Vec};
+use alloc::{sync::Arc, vec::Vec};
 use stepscope_peripheral::{segment::PulseTimes, units::Instant};
 
 pub(crate) const NEVER: u64 = u64::MAX;
@@ -95,7 +95,7 @@ impl GroupCounter {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Controller {
-    pub(crate) parameters: Rc<Parameters>,
+    pub(crate) parameters: Arc<Parameters>,
     pub(crate) clock_hz: u32,
     pub(crate) pulse: PulseTimes,
     pub(crate) state: State,
@@ -142,7 +142,7 @@ pub(crate) struct Controller {
 }
 
 impl Controller {
-    pub(crate) fn new(checked: &CheckedSetup, parameters: &Rc<Parameters>, script: Script) -> Self {
+    pub(crate) fn new(checked: &CheckedSetup, parameters: &Arc<Parameters>, script: Script) -> Self {
         let memory = &parameters.memory;
         let len = parameters.memory_len();
         let factory = journal::factory();

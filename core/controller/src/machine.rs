@@ -6,7 +6,7 @@ use crate::{
     checked::CheckedSetup, input::Signal, limits, panel::PanelRecord, parameters::Parameters,
     too_many_groups::TooManyGroups,
 };
-use alloc::{rc::Rc, vec::Vec};
+use alloc::{sync::Arc, vec::Vec};
 use stepscope_peripheral::signal::{Event, Levels, Record, Sink};
 use stepscope_peripheral::units::{Cycles, Instant};
 
@@ -30,10 +30,10 @@ impl StandAlone {
         let first_inputs =
             checked.controllers().first().into_iter().flat_map(|first| first.inputs.iter().copied());
         let shared = script::sorted(first_inputs.filter(|input| script::is_shared(input.change)));
-        let create = |(index, parameters): (usize, &Rc<Parameters>)| {
+        let create = |(index, parameters): (usize, &Arc<Parameters>)| {
             let own = script::sorted(parameters.inputs.iter().copied());
             // The first controller's own entries include the shared ones.
-            let script = Script::new(own, if index == 0 { Rc::new([]) } else { shared.clone() });
+            let script = Script::new(own, if index == 0 { Arc::new([]) } else { shared.clone() });
             Controller::new(checked, parameters, script)
         };
         let controllers: Vec<Controller> = checked.controllers().iter().enumerate().map(create).collect();

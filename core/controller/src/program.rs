@@ -5,7 +5,7 @@ use crate::motion::{Climb, Motion, Purpose};
 use crate::parameters::{Group, Jump, Move, MoveTo, Profile, Set, Wait};
 use crate::state::{Alarm, State};
 use crate::{input::Signal, numbers::Common};
-use alloc::{rc::Rc, vec};
+use alloc::{sync::Arc, vec};
 
 impl Controller {
     pub(crate) fn begin_program(&mut self, now: u64) {
@@ -19,7 +19,7 @@ impl Controller {
         let Some(number) = self.program.as_ref().map(|program| program.group) else { return };
         self.group_counter.group(number);
         self.state = State::Running;
-        let parameters = Rc::clone(&self.parameters);
+        let parameters = Arc::clone(&self.parameters);
         match parameters.groups.get(number as usize - 1) {
             Some(Group::Move(group)) => self.begin_move_group(now, number, group),
             Some(Group::MoveTo(group)) => self.begin_move_to(now, group),

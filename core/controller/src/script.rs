@@ -1,12 +1,12 @@
 //! The inputs of a controller that are still to come, in the order of their cycles (CONTROLLER G1.3).
 
 use crate::input::{Change, Input, Signal};
-use alloc::{collections::VecDeque, rc::Rc, vec::Vec};
+use alloc::{collections::VecDeque, sync::Arc, vec::Vec};
 
 /// Entries in the order of their cycles, and how many have been applied.
 #[derive(Clone, Debug, Default)]
 struct Queue {
-    entries: Rc<[Input]>,
+    entries: Arc<[Input]>,
     taken: usize,
 }
 
@@ -26,7 +26,7 @@ fn is_same_input(one: Change, other: Change) -> bool {
     one.name() == other.name()
 }
 
-pub(crate) fn sorted(entries: impl Iterator<Item = Input>) -> Rc<[Input]> {
+pub(crate) fn sorted(entries: impl Iterator<Item = Input>) -> Arc<[Input]> {
     let mut entries: Vec<Input> = entries.collect();
     entries.sort_by_key(|input| input.cycle);
     entries.into()
@@ -45,7 +45,7 @@ impl Queue {
 }
 
 impl Script {
-    pub(crate) fn new(own: Rc<[Input]>, shared: Rc<[Input]>) -> Self {
+    pub(crate) fn new(own: Arc<[Input]>, shared: Arc<[Input]>) -> Self {
         let queue = |entries| Queue { entries, taken: 0 };
         Self { queues: [queue(own), queue(shared)], entered: VecDeque::new() }
     }

@@ -39,6 +39,7 @@ pub mod motor;
 pub mod moves;
 mod planners;
 pub mod problem;
+mod problems;
 pub mod step_tables;
 mod timing;
 mod validator;
@@ -50,8 +51,9 @@ pub use planners::axis::{AxisPlan, PlannedMove};
 pub use planners::plan::{plan_axis, plan_lists, plan_move};
 pub use planners::{due_by::DueBy, profile::Profile};
 pub use problem::{Cause, Problem, ValueError};
+pub use problems::{MAX_PROBLEMS, Problems};
 pub use timing::ScheduledStep;
-pub use validator::{MAX_PROBLEMS, Validator};
+pub use validator::Validator;
 
 /// Maximum speed of a motion in steps/s.
 pub const MAX_SPEED: f64 = 1e7;

@@ -1,13 +1,11 @@
 //! Collects the problems of a motion or scenario, each with the path of its value (DESIGN B1).
 
 use crate::problem::{Cause, Problem, ValueError};
+use crate::problems::{MAX_PROBLEMS, Problems};
 use alloc::{string::String, vec::Vec};
 use core::{fmt::Write as _, ops::RangeInclusive};
 
 type Range<T> = RangeInclusive<T>;
-
-/// Maximum number of listed problems per scenario.
-pub const MAX_PROBLEMS: usize = 100;
 
 /// Collects problems with the path of the current value. It lists at most [`MAX_PROBLEMS`], and counts all. A `field` is the
 /// name of a field, or several with dots between them; empty for the current value itself.
@@ -102,7 +100,7 @@ impl<C: From<ValueError>> Validator<C> {
     }
 
     /// Returns the value of a result, or adds its problems.
-    pub fn take<T, D: Into<C>>(&mut self, result: Result<T, Vec<Problem<D>>>) -> Option<T> {
+    pub fn take<T, D: Into<C>>(&mut self, result: Result<T, Problems<D>>) -> Option<T> {
         result.map_err(|problems| self.extend(problems)).ok()
     }
 
@@ -143,14 +141,15 @@ impl<C: From<ValueError>> Validator<C> {
         self.count == 0
     }
 
-    pub fn problems(self) -> Vec<Problem<C>> {
-        self.problems
+    /// The listed problems; `None` if there are none.
+    pub fn problems(self) -> Option<Problems<C>> {
+        Problems::new(self.problems)
     }
 
     /// Returns `value`, or the problems if there are any.
     /// Errors: the listed problems.
-    pub fn end<T>(self, value: T) -> Result<T, Vec<Problem<C>>> {
-        if self.is_ok() { Ok(value) } else { Err(self.problems) }
+    pub fn end<T>(self, value: T) -> Result<T, Problems<C>> {
+        self.problems().map_or(Ok(value), Err)
     }
 }
 
@@ -164,7 +163,7 @@ mod tests {
         validator.add("a", Cause::EmptySegment);
         validator.extend([Problem::<Cause>::new("b.c", Cause::EmptySegment)]);
         assert_eq!(validator.count(), 2);
-        let paths: Vec<_> = validator.problems().into_iter().map(|problem| problem.path).collect();
+        let paths: Vec<_> = validator.problems().into_iter().flatten().map(|problem| problem.path).collect();
         assert_eq!(paths, ["a", "b.c"]);
     }
 
@@ -179,7 +178,7 @@ mod tests {
         assert_eq!(validator.count(), before + 1);
         validator.extend([Problem::<Cause>::new("c", Cause::EmptySegment)]);
         assert_eq!((validator.count(), validator.is_ok()), (before + 2, false));
-        let problems = validator.problems();
+        let problems = validator.problems().expect("there are some");
         assert_eq!(problems.len(), MAX_PROBLEMS);
         assert!(problems.iter().all(|problem| problem.path == "a"));
     }

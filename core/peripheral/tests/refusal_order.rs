@@ -7,7 +7,7 @@
 //! For each two neighbors there is a frame that breaks both rules and gets the first result, and one that breaks only the
 //! second rule and gets the second result.
 
-use std::rc::Rc;
+use std::sync::Arc;
 use stepscope_peripheral::{
     config::{Bus, Config, DirLine, Distribution, Protocol, PulsePhasing, SerialLine},
     device::{Device, Faults},
@@ -83,7 +83,7 @@ fn send_ticks(bus: &Bus, before: &[Sent], body: &[u8]) -> (FrameOutcome, Faults)
         end += Cycles(APART);
     }
     let (mut device, mut log) = (Device::new(&config), Log::default());
-    let mut line = Line::new(Rc::new(schedule), &[], CLOCK_HZ, BAUD);
+    let mut line = Line::new(Arc::new(schedule), &[], CLOCK_HZ, BAUD);
     while device.now() < end {
         if line.next_change() == device.now() {
             line.change();

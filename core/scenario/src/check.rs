@@ -1,7 +1,7 @@
 //! Checks rules between fields (DESIGN A4, A7, A9); `schema::ranges` checks single fields.
 
 use crate::{
-    Cause, Controller, Hex, Host, LineScript, Noise, Packets, Problem, Scenario, Source, VERSION, Validator,
+    Cause, Controller, Hex, Host, LineScript, Noise, Packets, Problems, Scenario, Source, VERSION, Validator,
     ValueError, limits::END_OF_TIME, schema::ranges::check_ranges,
 };
 use alloc::string::{String, ToString};
@@ -52,7 +52,7 @@ impl CheckedScenario {
 impl Scenario {
     /// Checks everything but motions.
     /// Errors: every problem, each with its path.
-    pub fn check(&self) -> Result<CheckedScenario, Vec<Problem>> {
+    pub fn check(&self) -> Result<CheckedScenario, Problems> {
         let mut validator = Validator::default();
         self.check_version(&mut validator);
         check_ranges(self, &mut validator);
@@ -67,7 +67,10 @@ impl Scenario {
             }),
             Source::Packets(packets) => self.check_packets(packets, &mut validator),
             Source::Line(script) => self.check_script(script, &mut validator),
-            Source::Segments(lists) => segments = validator.take(lists.check(&self.bus)),
+            Source::Segments(lists) => {
+                let check = |here: &mut Validator| lists.check(&self.bus, here);
+                segments = validator.at("source.segments.channels", check);
+            }
             Source::StandAlone(controllers) => {
                 stand_alone = self.check_stand_alone(controllers, &mut validator);
             }
@@ -348,7 +351,7 @@ mod tests {
 
     fn paths(json: &str) -> Vec<String> {
         let scenario = Scenario::from_json(json).expect("reads");
-        scenario.check().err().unwrap_or_default().into_iter().map(|p| p.path).collect()
+        scenario.check().err().into_iter().flatten().map(|p| p.path).collect()
     }
 
     #[test]

@@ -56,7 +56,7 @@ pub use json::Json;
 pub use limits::{END_OF_TIME, MAX_CONTROLLERS, MAX_TEXT_BYTES};
 pub use plant::Plants;
 pub use points::points_of_table;
-pub use problem::{Cause, Problem, Validator, ValueError, of_config, of_motion};
+pub use problem::{Cause, Problem, Problems, Validator, ValueError, of_config, of_motion};
 pub use read::{part_from_json, to_json};
 pub use reader::{JsonReader, ReadJson};
 pub use schema::{

@@ -13,8 +13,8 @@
 //! assert_eq!(link::decode(&text[..text.len() - 1]), Err(link::LinkError::Damaged));
 //! ```
 
-use crate::{Problem, Scenario, VERSION};
-use alloc::{format, string::String, vec::Vec};
+use crate::{Problems, Scenario, VERSION};
+use alloc::{format, string::String};
 use base64ct::{Base64UrlUnpadded, Encoding};
 use core::fmt;
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -49,7 +49,7 @@ pub enum LinkError {
     /// The payload does not fit its codec, or inflates to too much.
     Payload { most: usize },
     /// The scenario has problems.
-    Scenario(Vec<Problem>),
+    Scenario(Problems),
 }
 
 impl fmt::Display for LinkError {

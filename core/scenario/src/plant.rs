@@ -87,7 +87,7 @@ impl Scenario {
         {
             let path = format!("plant.motors[{index}]");
             let axis = Axis { motor: Some(entry.motor.clone()), ..Axis::default() };
-            validator.extend(plan_axis(&axis, &path).err().unwrap_or_default());
+            validator.extend(plan_axis(&axis, &path).err().into_iter().flatten());
             validator.at(&format!("{path}.motor"), |here| check_motor(&entry.motor, here));
         }
     }
@@ -315,7 +315,7 @@ mod tests {
 
     fn problems(json: &str) -> Vec<String> {
         let scenario = Scenario::from_json(json).expect("reads");
-        scenario.check().err().unwrap_or_default().iter().map(ToString::to_string).collect()
+        scenario.check().err().iter().flatten().map(ToString::to_string).collect()
     }
 
     #[test]

@@ -12,20 +12,24 @@ pub use stepscope_motion::problem::ValueError;
 /// A problem at the path of the field that has to change.
 pub type Problem = motion::Problem<Cause>;
 
+/// Why a scenario is refused: 1 to 100 problems.
+pub type Problems = stepscope_motion::Problems<Cause>;
+
 /// Collects problems of a scenario.
 pub type Validator = stepscope_motion::Validator<Cause>;
 
 /// Converts the problems of a plan.
-pub fn of_motion(problems: Vec<motion::Problem>) -> Vec<Problem> {
-    problems.into_iter().map(motion::Problem::widen).collect()
+pub fn of_motion(problems: stepscope_motion::Problems) -> Problems {
+    problems.widen()
 }
 
 /// Converts the problems of a configuration.
-pub fn of_config(problems: Vec<ConfigProblem>) -> Vec<Problem> {
-    problems
-        .into_iter()
-        .map(|ConfigProblem { field, error }| Problem::new(field.to_string(), error))
-        .collect()
+pub fn of_config(problems: Vec<ConfigProblem>) -> Problems {
+    let convert = |ConfigProblem { field, error }: ConfigProblem| Problem::new(field.to_string(), error);
+    // A refused configuration has at least one problem.
+    let unknown =
+        || Problem::new("bus", ValueError::Conflict { detail: "not valid; use the defaults" }).into();
+    Problems::new(problems.into_iter().map(convert).collect()).unwrap_or_else(unknown)
 }
 
 /// What is wrong.

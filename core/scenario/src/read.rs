@@ -1,11 +1,11 @@
 //! Reads scenarios of any version from JSON text, and writes them.
 
 use crate::{
-    Cause, Compact, Json, MAX_TEXT_BYTES, Problem, ReadJson, Scenario, ToParts, VERSION, compact,
+    Cause, Compact, Json, MAX_TEXT_BYTES, Problem, Problems, ReadJson, Scenario, ToParts, VERSION, compact,
     reader::read_into,
 };
 use alloc::string::{String, ToString};
-use alloc::vec::Vec;
+use core::str::FromStr;
 use stepscope_motion::MAX_PROBLEMS;
 
 /// Maximum bytes of a text with every field written; longer ones omit defaults.
@@ -16,18 +16,18 @@ const ANY_VERSION: u32 = 1;
 impl Scenario {
     /// Reads a scenario of any version up to [`VERSION`].
     /// Errors: every unknown or duplicate field and every wrong type. [`Scenario::check`] checks ranges.
-    pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
+    pub fn from_json(text: &str) -> Result<Self, Problems> {
         without_problems(read(text, None))
     }
 
     /// Reads a scenario whose version is known from elsewhere, such as a link.
     /// Errors: as [`Self::from_json`].
-    pub fn from_json_of(text: &str, version: u64) -> Result<Self, Vec<Problem>> {
+    pub fn from_json_of(text: &str, version: u64) -> Result<Self, Problems> {
         without_problems(read(text, Some(version)))
     }
 
     /// Reads as much as possible; unreadable fields get their defaults.
-    pub fn from_json_lenient(text: &str) -> (Self, Vec<Problem>) {
+    pub fn from_json_lenient(text: &str) -> (Self, Option<Problems>) {
         read(text, None)
     }
 
@@ -58,16 +58,24 @@ impl Scenario {
     }
 }
 
-fn without_problems((scenario, problems): (Scenario, Vec<Problem>)) -> Result<Scenario, Vec<Problem>> {
-    if problems.is_empty() { Ok(scenario) } else { Err(problems) }
+fn without_problems((scenario, problems): (Scenario, Option<Problems>)) -> Result<Scenario, Problems> {
+    problems.map_or(Ok(scenario), Err)
+}
+
+/// As [`Scenario::from_json`].
+impl FromStr for Scenario {
+    type Err = Problems;
+
+    fn from_str(json: &str) -> Result<Self, Problems> {
+        Self::from_json(json)
+    }
 }
 
 /// Reads a part of a scenario, such as an axis or a move. A part has no version, so names of all versions are accepted.
 /// Errors: every field of the wrong type or name, with its path in the part.
-pub fn part_from_json<T: ReadJson>(text: &str) -> Result<T, Vec<Problem>> {
+pub fn part_from_json<T: ReadJson>(text: &str) -> Result<T, Problems> {
     let mut part = T::blank();
-    let problems = read_into(&mut part, parse(text)?, ANY_VERSION);
-    if problems.is_empty() { Ok(part) } else { Err(problems) }
+    read_into(&mut part, parse(text)?, ANY_VERSION).map_or(Ok(part), Err)
 }
 
 /// Writes a part of a scenario as JSON, every field included.
@@ -77,13 +85,13 @@ pub fn to_json(part: &dyn ToParts) -> String {
     text
 }
 
-fn parse(text: &str) -> Result<Json<'_>, Vec<Problem>> {
+fn parse(text: &str) -> Result<Json<'_>, Problems> {
     // Some editors write a byte order mark.
     Json::parse(text.trim_start_matches('\u{feff}')).map_err(|error| {
         let (line, column) = (error.line(), error.column());
         let detail = error.to_string();
         let detail = detail.split(" at line ").next().unwrap_or_default().into();
-        alloc::vec![Problem::new("", Cause::Syntax { line, column, detail })]
+        Problem::new("", Cause::Syntax { line, column, detail }).into()
     })
 }
 
@@ -105,37 +113,39 @@ fn given_version(value: Json<'_>) -> Option<u64> {
 }
 
 /// A `known` version overrides the text's. Reads nothing if there are too many problems.
-fn read(text: &str, known: Option<u64>) -> (Scenario, Vec<Problem>) {
+fn read(text: &str, known: Option<u64>) -> (Scenario, Option<Problems>) {
     let value = match parse(text) {
         Ok(value) => value,
-        Err(problems) => return (Scenario::default(), problems),
+        Err(problems) => return (Scenario::default(), Some(problems)),
     };
     let given = known.or_else(|| given_version(value));
     if let Some(given) = given.filter(|given| *given > u64::from(VERSION)) {
         let newer = Problem::new("version", Cause::NewerVersion { given, newest: VERSION });
-        return (Scenario::default(), alloc::vec![newer]);
+        return (Scenario::default(), Some(newer.into()));
     }
     let mut scenario = Scenario::default();
     // An unreadable version is reported by `read_into`; names are then those of the newest version.
     let version = given.map_or(VERSION, |given| given as u32);
     let mut problems = read_into(&mut scenario, value, version);
     if known.is_some() {
-        problems.retain(|problem| problem.path != "version");
+        let others = problems.into_iter().flatten().filter(|problem| problem.path != "version");
+        problems = Problems::new(others.collect());
     }
     if (1..VERSION).contains(&version) || known.is_some() {
         scenario.version = VERSION;
     }
-    let read = if problems.len() < MAX_PROBLEMS { scenario } else { Scenario::default() };
+    let count = problems.as_ref().map_or(0, |problems| problems.len());
+    let read = if count < MAX_PROBLEMS { scenario } else { Scenario::default() };
     (read, problems)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::format;
+    use alloc::{format, vec::Vec};
 
     fn paths(text: &str) -> Vec<String> {
-        Scenario::from_json_lenient(text).1.into_iter().map(|p| p.path).collect()
+        Scenario::from_json_lenient(text).1.into_iter().flatten().map(|p| p.path).collect()
     }
 
     #[test]
@@ -262,11 +272,15 @@ mod tests {
     fn valid_fields_are_read_next_to_a_wrong_one() {
         let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"title","clock_hz":"x"}"#);
         assert_eq!(scenario.title, "title");
+        let problems = problems.expect("a wrong field");
         assert_eq!(problems.len(), 1);
         assert!(format!("{}", problems[0]).starts_with("clock_hz: "));
         // serde would read the list as fields in order.
         let (scenario, problems) = Scenario::from_json_lenient(r#"{"title":"title","bus":[7]}"#);
-        assert_eq!((scenario.title.as_str(), scenario.bus.channels, problems.len()), ("title", 1, 1));
+        assert_eq!(
+            (scenario.title.as_str(), scenario.bus.channels, problems.map_or(0, |p| p.len())),
+            ("title", 1, 1)
+        );
         assert_eq!(Scenario::from_json_lenient("[2]").0, Scenario::default());
     }
 }

@@ -4,7 +4,7 @@
 
 use crate::schema::{Field, Group, Limit, Type};
 use crate::upgrade::{self, Rename};
-use crate::{Cause, Json, Problem, Validator};
+use crate::{Cause, Json, Problems, Validator};
 use alloc::string::{String, ToString};
 use alloc::{borrow::ToOwned, format, vec::Vec};
 use core::{fmt::Display, mem::size_of};
@@ -33,7 +33,7 @@ pub struct JsonReader {
 }
 
 /// Returns all problems, at most [`stepscope_motion::MAX_PROBLEMS`].
-pub(super) fn read_into(target: &mut dyn ReadJson, value: Json<'_>, version: u32) -> Vec<Problem> {
+pub(super) fn read_into(target: &mut dyn ReadJson, value: Json<'_>, version: u32) -> Option<Problems> {
     let mut reader = JsonReader { version, ..JsonReader::default() };
     target.read(value, &mut reader);
     reader.validator.problems()

@@ -1,10 +1,8 @@
 //! Checks segment lists (DESIGN A8) and converts them for the segment engine, and back.
 
 use crate::{
-    ChannelSegments, Direction, DwellSegment, Problem, Segment, SegmentLists, StepSegment, Validator,
-    check::Channels,
+    ChannelSegments, Direction, DwellSegment, Segment, SegmentLists, StepSegment, Validator, check::Channels,
 };
-use alloc::vec::Vec;
 use stepscope_motion::{Cause, MAX_PROBLEMS};
 use stepscope_peripheral::segment::{self, CheckedSegments, PulseTimes, Refused, SegmentList};
 use stepscope_peripheral::{config::Bus, signal::MAX_CHANNELS, units::Instant};
@@ -13,16 +11,17 @@ use stepscope_peripheral::{config::Bus, signal::MAX_CHANNELS, units::Instant};
 const MAX_SEGMENTS: usize = 1_000_000;
 
 impl SegmentLists {
-    pub(crate) fn check(&self, bus: &Bus) -> Result<CheckedSegments, Vec<Problem>> {
-        let mut validator = Validator::within("source.segments.channels");
+    /// The lists, or problems in `validator`, whose path is that of the lists.
+    pub(crate) fn check(&self, bus: &Bus, validator: &mut Validator) -> Option<CheckedSegments> {
+        let before = validator.count();
         let channels = Channels { count: bus.channels, path: "bus.channels" };
-        channels.check_count(self.channels.len(), 0, "lists of segments", &mut validator);
+        channels.check_count(self.channels.len(), 0, "lists of segments", validator);
         let total = self.channels.iter().map(|channel| channel.segments.len()).sum();
         validator.length("", total, 0..=MAX_SEGMENTS, "segments");
         let pulse = PulseTimes::from(bus);
         let lists = self.channels.iter().take(MAX_CHANNELS).map(ChannelSegments::to_list).collect();
         match CheckedSegments::new(pulse, lists, MAX_PROBLEMS) {
-            Ok(lists) => validator.end(lists),
+            Ok(lists) => (validator.count() == before).then_some(lists),
             Err(refused) => {
                 for Refused { channel, segment, refusal } in refused {
                     // `check_ranges` has checked the starts.
@@ -35,7 +34,7 @@ impl SegmentLists {
                         });
                     }
                 }
-                Err(validator.problems())
+                None
             }
         }
     }
@@ -81,7 +80,7 @@ mod tests {
     fn problems(source: &str) -> Vec<alloc::string::String> {
         let json = format!(r#"{{"source":{{"segments":{{"channels":[{source}]}}}}}}"#);
         let scenario = Scenario::from_json(&json).expect("reads");
-        scenario.check().err().unwrap_or_default().iter().map(ToString::to_string).collect()
+        scenario.check().err().iter().flatten().map(ToString::to_string).collect()
     }
 
     #[test]
@@ -157,7 +156,7 @@ mod tests {
         // An unreadable segment must not shift the others.
         let json = r#"{"source":{"segments":{"channels":[{"segments":[5,{"steps":{"count":-1}},{"step":{}},{"steps":{"count":7}}]}]}}}"#;
         let (scenario, problems) = Scenario::from_json_lenient(json);
-        let mut paths: Vec<_> = problems.iter().map(|problem| problem.path.as_str()).collect();
+        let mut paths: Vec<_> = problems.iter().flatten().map(|problem| problem.path.as_str()).collect();
         paths.sort_unstable();
         let at = "source.segments.channels[0].segments";
         assert_eq!(paths, [format!("{at}[0]"), format!("{at}[1].steps.count"), format!("{at}[2]")]);

@@ -216,6 +216,7 @@ mod tests {
             for names in [[old, new], [new, old]] {
                 let both = position.with(&names);
                 let (read, problems) = Scenario::from_json_lenient(&both);
+                let problems = problems.expect("a duplicate field");
                 assert_eq!(problems.len(), 1, "{both}: {problems:?}");
                 let problem = problems[0].to_string();
                 let expected = format!("{old}: duplicate field: {new} is its new name; use one of them");

@@ -4,8 +4,8 @@ use stepscope_scenario::{Compact, Scenario};
 
 fn problems(controllers: &str) -> Vec<String> {
     let json = format!(r#"{{"bus":{{"channels":2}},"source":{{"standalone":{controllers}}}}}"#);
-    let (scenario, mut problems) = Scenario::from_json_lenient(&json);
-    problems.extend(scenario.check().err().unwrap_or_default());
+    let (scenario, unreadable) = Scenario::from_json_lenient(&json);
+    let problems: Vec<_> = unreadable.into_iter().chain(scenario.check().err()).flatten().collect();
     problems.iter().map(ToString::to_string).collect()
 }
 
@@ -105,7 +105,13 @@ fn only_a_pulse_of_the_bus_counts_and_no_line() {
     ];
     for (given, expected) in rows {
         let json = format!(r#"{{{given},"source":{{"standalone":[{{}}]}}}}"#);
-        let found = Scenario::from_json(&json).expect("reads").check().err().unwrap_or_default();
+        let found = Scenario::from_json(&json)
+            .expect("reads")
+            .check()
+            .err()
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>();
         assert_eq!(found.first().map(|problem| problem.path.as_str()), expected, "{given}: {found:?}");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::hosts::framed_host::{FramedHost, Job};
 use crate::line::{bus_load::carries, noise::Noise};
-use alloc::{format, rc::Rc, string::String, vec, vec::Vec};
+use alloc::{format, string::String, sync::Arc, vec, vec::Vec};
 use stepscope_motion::step_tables::{AxesPath, exact_segments, ticks};
 use stepscope_motion::{AxisPlan, plan_lists};
 use stepscope_peripheral::config::{Config, Protocol};
@@ -13,7 +13,8 @@ use stepscope_peripheral::wire::schedule::line_time;
 use stepscope_peripheral::wire::{ForcedLevel, Schedule};
 use stepscope_peripheral::{signal::MAX_CHANNELS, units::Instant};
 use stepscope_scenario::{
-    CheckedScenario, Controller, Hex, MAX_CONTROLLERS, Problem, Scenario, Source, ValueError, of_motion,
+    CheckedScenario, Controller, Hex, MAX_CONTROLLERS, Problem, Problems, Scenario, Source, ValueError,
+    of_motion,
 };
 
 /// Maximum bytes of all controllers' ticks together.
@@ -28,7 +29,7 @@ pub(super) struct ControllerPlan {
     config: Config,
     plans: Vec<AxisPlan>,
     /// One byte per channel, tick after tick.
-    ticks: Rc<[u8]>,
+    ticks: Arc<[u8]>,
 }
 
 impl ControllerPlan {
@@ -44,8 +45,8 @@ impl ControllerPlan {
         &self.ticks
     }
 
-    pub(super) fn shared_ticks(&self) -> Rc<[u8]> {
-        Rc::clone(&self.ticks)
+    pub(super) fn shared_ticks(&self) -> Arc<[u8]> {
+        Arc::clone(&self.ticks)
     }
 
     pub(super) fn has_ticks(&self) -> bool {
@@ -58,7 +59,7 @@ impl ControllerPlan {
 }
 
 /// The plan of each axis of each controller; empty if the source is not a motion.
-pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
+pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Problems> {
     let Source::Motion(motion) = &scenario.source else {
         return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
     };
@@ -71,7 +72,7 @@ pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Vec<Probl
 pub(super) fn controller_plans(
     checked: &CheckedScenario,
     plans: Vec<Vec<AxisPlan>>,
-) -> Result<Vec<ControllerPlan>, Vec<Problem>> {
+) -> Result<Vec<ControllerPlan>, Problems> {
     let (mut controllers, mut problems, mut total) = (Vec::new(), Vec::new(), 0);
     for (index, (config, plans)) in checked.configs.iter().zip(plans).enumerate() {
         match ticks_of(checked, index, config, &plans) {
@@ -98,7 +99,7 @@ pub(super) fn controller_plans(
             break;
         }
     }
-    if problems.is_empty() { Ok(controllers) } else { Err(problems) }
+    Problems::check(problems).map(|()| controllers)
 }
 
 fn additional_path(index: usize) -> Option<String> {
@@ -110,7 +111,7 @@ fn ticks_of(
     index: usize,
     config: &Config,
     plans: &[AxisPlan],
-) -> Result<Vec<u8>, Vec<Problem>> {
+) -> Result<Vec<u8>, Problems> {
     let additional = index.checked_sub(1).and_then(|index| checked.additional.get(index));
     Ok(match &checked.source {
         source if !source.sends_ticks() => Vec::new(),
@@ -134,7 +135,7 @@ fn ticks_of(
 pub(super) fn segments(
     checked: &CheckedScenario,
     controllers: &[ControllerPlan],
-) -> Result<Option<CheckedSegments>, Vec<Problem>> {
+) -> Result<Option<CheckedSegments>, Problems> {
     match (&checked.source, controllers.first()) {
         (Source::Motion(_), Some(ControllerPlan { config, plans, .. })) if checked.source.uses_segments() => {
             let pulse = PulseTimes::from(config);
@@ -247,13 +248,13 @@ pub(super) fn framed_host(checked: &CheckedScenario, controllers: &[ControllerPl
     )
 }
 
-pub(super) fn job(config: &Config, ticks: &Rc<[u8]>) -> Job {
+pub(super) fn job(config: &Config, ticks: &Arc<[u8]>) -> Job {
     Job {
         address: config.address().unwrap_or(0),
         channels: config.channels(),
         tick: config.tick(),
         queue_depth: config.queue_depth(),
-        commands: Rc::clone(ticks),
+        commands: Arc::clone(ticks),
     }
 }
 
@@ -286,7 +287,7 @@ pub(super) fn line_load<'a>(checked: &'a CheckedScenario) -> Result<Option<f64>,
 
 /// Thousandths of a bit time per tick, with its share of frame and reply.
 fn frame_bits(checked: &CheckedScenario, config: &Config) -> u128 {
-    let ticks = job(config, &Rc::from([])).ticks_per_frame(&checked.host);
+    let ticks = job(config, &Arc::from([])).ticks_per_frame(&checked.host);
     let content = vec![0xff; 4 + usize::from(ticks) * usize::from(config.channels())];
     let bytes = (encode_frame(&content).len() + ACK_LEN) as u128;
     PART_OF_BIT * (10 * bytes + EXCHANGE_BITS) / u128::from(ticks)

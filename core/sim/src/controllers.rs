@@ -87,7 +87,11 @@ impl Controllers {
 
     pub(crate) fn positions(&self) -> [i32; MAX_CHANNELS] {
         match &self.generator {
-            Generator::Bus => self.bus.first().positions(),
+            Generator::Bus => {
+                let mut positions = [0; MAX_CHANNELS];
+                positions.iter_mut().zip(self.bus.first().positions()).for_each(|(to, from)| *to = *from);
+                positions
+            }
             Generator::Segments(engine) => engine.positions(),
             Generator::StandAlone(machine) => machine.positions(),
         }

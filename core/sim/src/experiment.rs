@@ -5,7 +5,7 @@ use crate::controllers::{Controllers, Generator};
 use crate::hosts::framed_host::{Conversation, Progress};
 use crate::plant::attached::AttachedPlants;
 use crate::{cost::Cost, line::bus::Bus, run::Run};
-use alloc::{boxed::Box, rc::Rc, vec, vec::Vec};
+use alloc::{boxed::Box, sync::Arc, vec::Vec};
 use core::slice;
 use stepscope_controller::StandAlone;
 use stepscope_motion::AxisPlan;
@@ -13,7 +13,7 @@ use stepscope_peripheral::device::{Device, SegmentEngine};
 use stepscope_peripheral::signal::{MAX_CHANNELS, Sink, Unpaused};
 use stepscope_peripheral::wire::{Line, Schedule};
 use stepscope_peripheral::{config::Config, segment::CheckedSegments, units::Instant};
-use stepscope_scenario::{CheckedScenario, END_OF_TIME, Problem, Scenario, ValueError};
+use stepscope_scenario::{CheckedScenario, END_OF_TIME, Problem, Problems, Scenario, ValueError};
 
 const MAX_TICKS: u64 = 2_000_000;
 /// The address, and one byte per channel.
@@ -36,7 +36,7 @@ const MAX_MOTOR_GRID_STEPS: u64 = 10_000_000_000;
 ///
 /// let problems = Experiment::from_json(r#"{ "bus": { "slots": 0 } }"#).unwrap_err();
 /// assert_eq!(problems[0].path, "bus.slots");
-/// # Ok::<(), Vec<stepscope_scenario::Problem>>(())
+/// # Ok::<(), stepscope_scenario::Problems>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Experiment {
@@ -44,9 +44,9 @@ pub struct Experiment {
     /// Never empty. The scenario's own controller is first.
     controllers: Vec<ControllerPlan>,
     /// What the host sends without waiting for replies.
-    schedule: Rc<Schedule>,
+    schedule: Arc<Schedule>,
     /// The segment lists, if segments generate the steps. The host sends nothing in that case.
-    segments: Option<Rc<CheckedSegments>>,
+    segments: Option<Arc<CheckedSegments>>,
     line_load: Option<f64>,
     cost: Cost,
 }
@@ -55,38 +55,32 @@ pub struct Experiment {
 type Validated = (CheckedScenario, Vec<ControllerPlan>, Option<f64>);
 
 /// Errors: the problems of all fields and motions. Those of the line need valid fields, those of ticks also valid motions.
-fn validate(scenario: &Scenario) -> Result<Validated, Vec<Problem>> {
-    let mut problems = Vec::new();
-    let checked = collect(scenario.check(), &mut problems);
-    let plans = collect(controller_plan::plans(scenario), &mut problems);
-    let Some(checked) = checked else { return Err(problems) };
-    let line_load = controller_plan::line_load(&checked).map_err(|problem| vec![problem]);
-    let line_load = collect(line_load, &mut problems);
-    let Some(plans) = plans else { return Err(problems) };
-    let controllers = collect(controller_plan::controller_plans(&checked, plans), &mut problems);
-    let (Some(controllers), Some(line_load)) = (controllers, line_load) else { return Err(problems) };
+fn validate(scenario: &Scenario) -> Result<Validated, Problems> {
+    let plans = controller_plan::plans(scenario);
+    let checked = match scenario.check() {
+        Ok(checked) => checked,
+        Err(problems) => return Err(problems.with(plans.err())),
+    };
+    let line_load = controller_plan::line_load(&checked).map_err(Problems::from);
+    let controllers = match plans {
+        Ok(plans) => controller_plan::controller_plans(&checked, plans),
+        Err(problems) => return Err(problems.with(line_load.err())),
+    };
+    let line_load = match line_load {
+        Ok(line_load) => line_load,
+        Err(problems) => return Err(problems.with(controllers.err())),
+    };
+    let controllers = controllers?;
     debug_assert!(!controllers.is_empty() && controllers.len() == checked.configs.len());
     Ok((checked, controllers, line_load))
 }
 
-/// The value; `None` if there are problems. Adds those of fields that have none yet.
-fn collect<T>(result: Result<T, Vec<Problem>>, problems: &mut Vec<Problem>) -> Option<T> {
-    let found = match result {
-        Ok(value) => return Some(value),
-        Err(found) => found,
-    };
-    let is_new = |problem: &Problem| problems.iter().all(|known| known.path != problem.path);
-    let new: Vec<_> = found.into_iter().filter(is_new).collect();
-    problems.extend(new);
-    None
-}
-
-fn check_cost(path: &'static str, given: u64, max: u64, of: &'static str) -> Result<(), Vec<Problem>> {
+fn check_cost(path: &'static str, given: u64, max: u64, of: &'static str) -> Result<(), Problems> {
     if given <= max {
         return Ok(());
     }
     let cause = ValueError::TooMuch { given: given as f64, max: max as f64, of };
-    Err(vec![Problem::new(path, cause)])
+    Err(Problem::new(path, cause).into())
 }
 
 /// Whether the field at `path` is the one at `parent` or a part of it.
@@ -96,11 +90,11 @@ fn is_within(path: &str, parent: &str) -> bool {
 
 impl Experiment {
     /// Validates a scenario and prepares its run. Errors: every problem, each with its path.
-    pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+    pub fn new(scenario: &Scenario) -> Result<Self, Problems> {
         let (mut checked, controllers, line_load) = validate(scenario)?;
         let (schedule, forced) = controller_plan::schedule(&checked, &controllers);
         checked.forced.extend(forced);
-        let segments = controller_plan::segments(&checked, &controllers)?.map(Rc::new);
+        let segments = controller_plan::segments(&checked, &controllers)?.map(Arc::new);
         let cost = match (&checked.stand_alone, &segments) {
             (Some(stand_alone), _) => Cost::of_stand_alone(stand_alone, checked.run)?,
             (None, Some(segments)) => Cost::of_segments(segments, checked.run),
@@ -112,28 +106,26 @@ impl Experiment {
         check_cost("plant.step_cycles", grid_steps, MAX_MOTOR_GRID_STEPS, "grid steps of all motors")?;
         check_cost("source", cost.end_cycle, END_OF_TIME, "cycles")?;
         let line_load = line_load.filter(|_| controllers.iter().any(ControllerPlan::has_ticks));
-        Ok(Self { checked, controllers, schedule: Rc::new(schedule), segments, line_load, cost })
+        Ok(Self { checked, controllers, schedule: Arc::new(schedule), segments, line_load, cost })
     }
 
     /// Reads, validates and prepares a scenario. Errors: every problem of types and numbers.
-    pub fn from_json(text: &str) -> Result<Self, Vec<Problem>> {
+    pub fn from_json(text: &str) -> Result<Self, Problems> {
         let (scenario, unreadable) = Scenario::from_json_lenient(text);
         Self::from_partial(&scenario, unreadable)
     }
 
-    /// Validates a scenario. If `unreadable` is not empty, those fields have their defaults, so rules about several fields are
+    /// Validates a scenario. If there are `unreadable` fields, they have their defaults, so rules about several fields are
     /// skipped. Errors: `unreadable` and all other problems.
-    pub fn from_partial(scenario: &Scenario, unreadable: Vec<Problem>) -> Result<Self, Vec<Problem>> {
+    pub fn from_partial(scenario: &Scenario, unreadable: Option<Problems>) -> Result<Self, Problems> {
         let validated = Self::new(scenario);
-        if unreadable.is_empty() {
-            return validated;
-        }
-        let mut problems = unreadable.clone();
-        problems.extend(validated.err().unwrap_or_default().into_iter().filter(|problem| {
+        let Some(unreadable) = unreadable else { return validated };
+        let others = validated.err().into_iter().flatten().filter(|problem| {
             !problem.cause.depends_on_several_fields()
                 && !unreadable.iter().any(|bad| is_within(&problem.path, &bad.path))
-        }));
-        Err(problems)
+        });
+        let others = Problems::new(others.collect());
+        Err(unreadable.with(others))
     }
 
     /// Number of controllers on the line, 1 to 32.
@@ -214,6 +206,18 @@ impl Experiment {
         !has_end && self.stand_alone().is_some_and(crate::stand_alone::jogs_without_end)
     }
 
+    /// Fails if a run never ends.
+    ///
+    /// # Errors
+    /// A jog button of a stand-alone controller stays pressed.
+    pub fn check_has_end(&self) -> Result<(), Problems> {
+        if !self.jogs_without_end() {
+            return Ok(());
+        }
+        let detail = "a jog button stays pressed, so the run has no end; set run_cycles, or release the button in inputs";
+        Err(Problem::new("run_cycles", ValueError::Conflict { detail }).into())
+    }
+
     /// The stand-alone controllers; `None` with another source.
     pub const fn stand_alone(&self) -> Option<&stepscope_controller::CheckedSetup> {
         self.checked.stand_alone.as_ref()
@@ -224,7 +228,7 @@ impl Experiment {
             return Generator::StandAlone(StandAlone::new(checked));
         }
         match &self.segments {
-            Some(lists) => Generator::Segments(Box::new(SegmentEngine::new(Rc::clone(lists)))),
+            Some(lists) => Generator::Segments(Box::new(SegmentEngine::new(Arc::clone(lists)))),
             None => Generator::Bus,
         }
     }
@@ -243,7 +247,7 @@ impl Experiment {
     pub fn start(&self) -> Run {
         let CheckedScenario { baud, forced, run, .. } = &self.checked;
         let clock_hz = self.config().clock_hz();
-        let line = Line::new(Rc::clone(&self.schedule), forced, clock_hz, *baud);
+        let line = Line::new(Arc::clone(&self.schedule), forced, clock_hz, *baud);
         let waits = self.checked.waits_for_replies();
         let host = waits.then(|| controller_plan::framed_host(&self.checked, &self.controllers));
         Run {
@@ -302,12 +306,7 @@ mod tests {
     use stepscope_peripheral::signal::Record;
 
     fn paths(json: &str) -> Vec<String> {
-        Experiment::from_json(json)
-            .err()
-            .unwrap_or_default()
-            .into_iter()
-            .map(|problem| problem.path)
-            .collect()
+        Experiment::from_json(json).err().into_iter().flatten().map(|problem| problem.path).collect()
     }
 
     #[test]

@@ -1,26 +1,23 @@
 //! Cost and summary of runs of stand-alone controllers (CONTROLLER.md).
 
 use crate::{BUDGET_RECORDS, Cost};
-use alloc::{format, vec, vec::Vec};
+use alloc::{format, vec::Vec};
 use core::fmt;
 use stepscope_controller::{Alarm, CheckedSetup, Press, StandAlone, State, TooManyGroups, trust_name};
 use stepscope_peripheral::signal::{Record, Sink};
 use stepscope_peripheral::units::{Cycles, Instant};
-use stepscope_scenario::{Cause, END_OF_TIME, Problem};
+use stepscope_scenario::{Cause, END_OF_TIME, Problem, Problems};
 
 impl Cost {
     /// Runs the controllers up to the budget, because their cost has no closed form. Errors: too many groups begin.
-    pub(crate) fn of_stand_alone(
-        controllers: &CheckedSetup,
-        run: Option<Cycles>,
-    ) -> Result<Self, Vec<Problem>> {
+    pub(crate) fn of_stand_alone(controllers: &CheckedSetup, run: Option<Cycles>) -> Result<Self, Problems> {
         let mut tried = StandAlone::new(controllers);
         let mut counted = Counted(0);
         let until = run.map_or(Instant::NEVER, |Cycles(run)| Instant(run));
         let is_short = tried.run_events(until, MAX_TRIED_EVENTS, &mut counted) && !counted.is_paused();
         if let Some(work) = tried.too_many_groups() {
             let path = format!("source.standalone[{}].groups", work.controller);
-            return Err(vec![Problem::new(path, Cause::TooManyGroups(work))]);
+            return Err(Problem::new(path, Cause::TooManyGroups(work)).into());
         }
         // The end is unknown if the trial was aborted.
         let records = if is_short { counted.0 } else { counted.0.max(BUDGET_RECORDS + 1) };

@@ -101,8 +101,9 @@ impl ControllerSummary {
         digest: &Digest,
     ) -> Self {
         // With segments, no device moves.
-        let positions = if index == 0 { run.positions() } else { device.positions() };
         let channels = usize::from(config.channels());
+        let first = run.positions();
+        let positions = if index == 0 { &first } else { device.positions() };
         let job = experiment.host_progress(run, index).map(|progress| JobSummary {
             ticks: experiment.ticks_of(index).len() / channels.max(1),
             acknowledged: experiment.host_acknowledged(run, index).unwrap_or(0),
@@ -114,7 +115,7 @@ impl ControllerSummary {
             digest: digest.value(),
             records: digest.records(),
             ticks_done: device.ticks_done(),
-            positions: positions.into_iter().take(channels).collect(),
+            positions: positions.iter().take(channels).copied().collect(),
             faults: if index == 0 { run.faults() } else { device.faults() },
             status: device.status(),
             job,

@@ -1,17 +1,17 @@
 //! A scenario that is read, validated and planned once per edit, for the run and the study.
 
 use crate::Experiment;
-use alloc::{rc::Rc, vec::Vec};
+use alloc::sync::Arc;
 use stepscope_motion::{AxisPlan, moves::Axis};
 use stepscope_peripheral::config::Bus;
-use stepscope_scenario::{Problem, Scenario, Source};
+use stepscope_scenario::{Problem, Problems, Scenario, Source};
 
 /// A scenario with the result of its validation. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct ValidatedScenario {
-    scenario: Rc<Scenario>,
-    unreadable: Rc<[Problem]>,
-    result: Result<Rc<Experiment>, Rc<[Problem]>>,
+    scenario: Arc<Scenario>,
+    unreadable: Option<Arc<Problems>>,
+    result: Result<Arc<Experiment>, Arc<Problems>>,
 }
 
 /// An axis with its plan and its bus.
@@ -30,28 +30,28 @@ impl ValidatedScenario {
         Self::of(scenario, unreadable)
     }
 
-    fn of(scenario: Scenario, unreadable: Vec<Problem>) -> Self {
-        let result = Experiment::from_partial(&scenario, unreadable.clone()).map(Rc::new).map_err(Rc::from);
-        Self { scenario: Rc::new(scenario), unreadable: unreadable.into(), result }
+    fn of(scenario: Scenario, unreadable: Option<Problems>) -> Self {
+        let result = Experiment::from_partial(&scenario, unreadable.clone()).map(Arc::new).map_err(Arc::new);
+        Self { scenario: Arc::new(scenario), unreadable: unreadable.map(Arc::new), result }
     }
 
-    pub const fn scenario(&self) -> &Rc<Scenario> {
+    pub const fn scenario(&self) -> &Arc<Scenario> {
         &self.scenario
     }
 
     /// The problems of fields that could not be read.
     pub fn unreadable(&self) -> &[Problem] {
-        &self.unreadable
+        self.unreadable.as_deref().map_or(&[], |problems| problems)
     }
 
     /// The experiment to run. Errors: every problem of the scenario, each with its path.
-    pub fn experiment(&self) -> Result<&Rc<Experiment>, &[Problem]> {
+    pub fn experiment(&self) -> Result<&Arc<Experiment>, &Problems> {
         self.result.as_ref().map_err(|problems| &**problems)
     }
 
     /// All problems; empty if the scenario is valid.
     pub fn problems(&self) -> &[Problem] {
-        self.result.as_ref().err().map_or(&[], |problems| &**problems)
+        self.result.as_ref().err().map_or(&[], |problems| problems)
     }
 
     /// An axis with its plan; `None` if it does not exist or the scenario has problems.
@@ -65,7 +65,7 @@ impl ValidatedScenario {
 
 impl From<Scenario> for ValidatedScenario {
     fn from(scenario: Scenario) -> Self {
-        Self::of(scenario, Vec::new())
+        Self::of(scenario, None)
     }
 }
 

@@ -23,7 +23,7 @@ fn axis(json: &str) -> Axis {
 /// Holds the problems of an axis against those expected.
 #[track_caller]
 fn check(json: &str, expected: &[&str]) {
-    let problems = plan_axis(&axis(json), "axis").err().unwrap_or_default();
+    let problems = plan_axis(&axis(json), "axis").err().into_iter().flatten().collect::<Vec<_>>();
     let found: Vec<_> = problems.iter().map(ToString::to_string).collect();
     assert_eq!(found, expected, "{json}");
 }

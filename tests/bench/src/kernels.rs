@@ -20,7 +20,7 @@ use stepscope_core::{
         units::{Cycles, Instant},
     },
     plant::{Plant, parameters::CurrentControl, sincos},
-    scenario::{Problem, of_motion},
+    scenario::{Problems, of_motion},
     sim::{Experiment, plant_run::PlantRun},
 };
 
@@ -94,7 +94,7 @@ impl Kernels {
     ///
     /// # Errors
     /// None, as long as the scenario's rules stay as they are.
-    pub fn new() -> Result<Self, Vec<Problem>> {
+    pub fn new() -> Result<Self, Problems> {
         let (steady, varied) = (motions::steady()?, motions::varied()?);
         let mut source = Vec::new();
         steady.run(&mut source);

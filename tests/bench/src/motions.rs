@@ -11,7 +11,7 @@ use stepscope_core::{
     },
     plant::parameters::{self, CurrentControl, Setup},
     scenario::{
-        ChannelSegments, Controller, Hex, Line, LineScript, Motion, PlantSettings, Problem, Scenario,
+        ChannelSegments, Controller, Hex, Line, LineScript, Motion, PlantSettings, Problems, Scenario,
         ScriptedSend, Segment, SegmentLists, Source, StepSegment,
     },
     sim::Experiment,
@@ -89,7 +89,7 @@ fn s_curve(duration_s: f64, top_speed: f64) -> Axis {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn steady() -> Result<Experiment, Vec<Problem>> {
+pub fn steady() -> Result<Experiment, Problems> {
     Experiment::new(&sixteen(vec![constant(1e6, 1e5); 16]))
 }
 
@@ -97,14 +97,14 @@ pub fn steady() -> Result<Experiment, Vec<Problem>> {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn varied() -> Result<Experiment, Vec<Problem>> {
+pub fn varied() -> Result<Experiment, Problems> {
     let axes = (0..16).map(|axis| s_curve(10.0 - 0.2 * f64::from(axis), 95_000.0 - 500.0 * f64::from(axis)));
     Experiment::new(&sixteen(axes.collect()))
 }
 
 /// Sixteen channels at 10 kHz each for 10 s in slots of 100 us: room for pulses that come after each
 /// other.
-fn with_room(bus: Bus) -> Result<Experiment, Vec<Problem>> {
+fn with_room(bus: Bus) -> Result<Experiment, Problems> {
     let mut scenario = sixteen(vec![constant(1e5, 1e4); 16]);
     let (channels, slots) = (scenario.bus.channels, scenario.bus.slots);
     scenario.bus = Bus {
@@ -122,7 +122,7 @@ fn with_room(bus: Bus) -> Result<Experiment, Vec<Problem>> {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn common_dir() -> Result<Experiment, Vec<Problem>> {
+pub fn common_dir() -> Result<Experiment, Problems> {
     with_room(Bus { dir_line: DirLine::Common, ..Bus::default() })
 }
 
@@ -130,7 +130,7 @@ pub fn common_dir() -> Result<Experiment, Vec<Problem>> {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn staggered() -> Result<Experiment, Vec<Problem>> {
+pub fn staggered() -> Result<Experiment, Problems> {
     with_room(Bus { pulse_phasing: PulsePhasing::Staggered, settle_cycles: 100, ..Bus::default() })
 }
 
@@ -138,7 +138,7 @@ pub fn staggered() -> Result<Experiment, Vec<Problem>> {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn framed() -> Result<Experiment, Vec<Problem>> {
+pub fn framed() -> Result<Experiment, Problems> {
     // Ticks of 1.5 ms: a tick's bytes, with their share of frames and replies, take more than 1 ms.
     let mut scenario = sixteen(vec![constant(1e6, 1e5 * 160.0 / 240.0); 16]);
     scenario.line = Line { baud: 1_400_000, protocol: Protocol::Framed, ..Line::default() };
@@ -151,7 +151,7 @@ pub fn framed() -> Result<Experiment, Vec<Problem>> {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn segments() -> Result<Experiment, Vec<Problem>> {
+pub fn segments() -> Result<Experiment, Problems> {
     let steps = StepSegment { count: 1_000_000, interval_q16: 160 << 16, ..StepSegment::default() };
     let list = ChannelSegments { segments: vec![Segment::Steps(steps)], ..ChannelSegments::default() };
     let mut scenario = sixteen(Vec::new());
@@ -163,7 +163,7 @@ pub fn segments() -> Result<Experiment, Vec<Problem>> {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn plant_run() -> Result<Experiment, Vec<Problem>> {
+pub fn plant_run() -> Result<Experiment, Problems> {
     let steps = StepSegment { count: 400, interval_q16: 4000 << 16, ..StepSegment::default() };
     let list = ChannelSegments { segments: vec![Segment::Steps(steps)], ..ChannelSegments::default() };
     let mut scenario = sixteen(Vec::new());
@@ -190,7 +190,7 @@ pub fn plant(regulator: CurrentControl) -> Setup {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn segments_apart() -> Result<Experiment, Vec<Problem>> {
+pub fn segments_apart() -> Result<Experiment, Problems> {
     let steps = StepSegment { count: 62_500, interval_q16: 160 << 16, ..StepSegment::default() };
     let list = |channel: u64| ChannelSegments {
         start_cycle: 1 + 10 * channel,
@@ -222,7 +222,7 @@ fn motors() -> Scenario {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn motors_512() -> Result<Experiment, Vec<Problem>> {
+pub fn motors_512() -> Result<Experiment, Problems> {
     Experiment::new(&motors())
 }
 
@@ -230,7 +230,7 @@ pub fn motors_512() -> Result<Experiment, Vec<Problem>> {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn motors_16() -> Result<Experiment, Vec<Problem>> {
+pub fn motors_16() -> Result<Experiment, Problems> {
     let all = motors_512()?;
     let send = |send: Sent<'_>| ScriptedSend {
         start_cycle: send.start.0,
@@ -246,7 +246,7 @@ pub fn motors_16() -> Result<Experiment, Vec<Problem>> {
 ///
 /// # Errors
 /// None for whole MHz, as long as the scenario's rules stay as they are.
-pub fn at_clock(clock_hz: u32) -> Result<Experiment, Vec<Problem>> {
+pub fn at_clock(clock_hz: u32) -> Result<Experiment, Problems> {
     let axes = (0..4).map(|axis| s_curve(10.0 - 0.25 * f64::from(axis), 9500.0 - 50.0 * f64::from(axis)));
     Experiment::new(&four(clock_hz, axes.collect()))
 }
@@ -255,7 +255,7 @@ pub fn at_clock(clock_hz: u32) -> Result<Experiment, Vec<Problem>> {
 ///
 /// # Errors
 /// None, as long as the scenario's rules stay as they are.
-pub fn short() -> Result<Experiment, Vec<Problem>> {
+pub fn short() -> Result<Experiment, Problems> {
     Experiment::new(&four(16_000_000, vec![constant(500.0, 1e4); 4]))
 }
 

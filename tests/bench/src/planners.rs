@@ -2,7 +2,7 @@
 
 use stepscope_core::{
     motion::{AxisPlan, Cause, plan_axis},
-    scenario::{Problem, Scenario, Source, of_motion},
+    scenario::{Problem, Problems, Scenario, Source, of_motion},
 };
 
 /// A planner, of all that a move can be.
@@ -146,7 +146,7 @@ impl Planner {
     ///
     /// # Errors
     /// None, as long as the scenario's rules stay as they are.
-    pub fn plan(self) -> Result<AxisPlan, Vec<Problem>> {
+    pub fn plan(self) -> Result<AxisPlan, Problems> {
         let (_, given) = self.row();
         let scenario = format!(r#"{{"source":{{"motion":{{"axes":[{{"moves":[{given}]}}]}}}}}}"#);
         match Scenario::from_json(&scenario)?.source {
@@ -159,7 +159,7 @@ impl Planner {
                 .pop(),
             _ => None,
         }
-        .ok_or_else(|| vec![Problem::new("axis", Cause::EmptySegment)])
+        .ok_or_else(|| Problem::new("axis", Cause::EmptySegment).into())
     }
 }
 

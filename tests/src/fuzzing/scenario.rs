@@ -9,7 +9,7 @@ use stepscope_core::{
     },
     peripheral::{trace::Digest, units::Cycles},
     plant::State,
-    scenario::{Compact, END_OF_TIME, Problem, Scenario},
+    scenario::{Compact, END_OF_TIME, Problem, Problems, Scenario},
     sim::{Experiment, plant_run::PlantRun},
 };
 
@@ -114,10 +114,10 @@ pub fn seeds() -> Vec<Vec<u8>> {
 ///
 /// # Panics
 /// Where a property is broken.
-pub fn judge(text: &str) -> Result<Experiment, Vec<Problem>> {
+pub fn judge(text: &str) -> Result<Experiment, Problems> {
     let (scenario, unread) = Scenario::from_json_lenient(text);
-    assert!(unread.len() <= MAX_PROBLEMS, "{} problems", unread.len());
-    assert_eq!(Scenario::from_json(text).is_ok(), unread.is_empty());
+    assert!(unread.as_ref().is_none_or(|unread| unread.len() <= MAX_PROBLEMS));
+    assert_eq!(Scenario::from_json(text).is_ok(), unread.is_none());
     let canonical = scenario.compact().to_string();
     for json in [scenario.to_json(), canonical.clone()] {
         let again = Scenario::from_json(&json);
@@ -125,7 +125,7 @@ pub fn judge(text: &str) -> Result<Experiment, Vec<Problem>> {
         assert_eq!(again.map(|again| again.compact().to_string()).as_ref(), Ok(&canonical));
     }
     let judged = Experiment::from_json(text);
-    assert!(unread.is_empty() || judged.is_err());
+    assert!(unread.is_none() || judged.is_err());
     match &judged {
         Ok(experiment) => bounded(experiment),
         Err(problems) => told(problems, text),

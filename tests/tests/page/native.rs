@@ -7,7 +7,7 @@ use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
     peripheral::trace::Digest,
     scenario::{
-        Problem, Scenario,
+        Problem, Problems, Scenario,
         link::{self, LinkError},
         presets::Preset,
     },
@@ -74,7 +74,7 @@ pub(crate) fn with_distance(steps: f64) -> String {
 
 /// Everything that is wrong with a scenario, as `check` in the page has it.
 pub(crate) fn problems(json: &str) -> Vec<Problem> {
-    Experiment::from_json(json).err().unwrap_or_default()
+    Experiment::from_json(json).err().into_iter().flatten().collect()
 }
 
 /// Why a link does not open; an error if it does.
@@ -91,7 +91,6 @@ pub(crate) fn forged(codec: char, payload: &[u8]) -> String {
     format!("c={text}.{:08x}", Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(text.as_bytes()))
 }
 
-fn listed(problems: Vec<Problem>) -> anyhow::Error {
-    let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
-    anyhow!(lines.join("\n"))
+fn listed(problems: Problems) -> anyhow::Error {
+    anyhow!(problems)
 }

@@ -4,7 +4,7 @@ use crate::convert::records;
 use crate::scenario::{ValidatedScenario, listed};
 use crate::view::advance::{advance, progress};
 use crate::view::panel_log::PanelLog;
-use std::{mem::take, rc::Rc};
+use std::{mem::take, sync::Arc};
 use stepscope_core::{
     inspect::{
         packets::packet_table::Filter,
@@ -29,8 +29,8 @@ const MAX_VIOLATIONS: usize = 1000;
 /// The run of a scenario.
 #[wasm_bindgen]
 pub struct Simulation {
-    pub(crate) scenario: Rc<Scenario>,
-    pub(crate) experiment: Rc<Experiment>,
+    pub(crate) scenario: Arc<Scenario>,
+    pub(crate) experiment: Arc<Experiment>,
     pub(crate) run: Run,
     /// One per controller; never empty.
     pub(crate) recordings: Vec<ControllerRecording>,
@@ -226,7 +226,7 @@ impl Simulation {
     }
 
     /// A run before its first cycle.
-    pub(crate) fn of(scenario: &Rc<Scenario>, experiment: &Rc<Experiment>) -> Self {
+    pub(crate) fn of(scenario: &Arc<Scenario>, experiment: &Arc<Experiment>) -> Self {
         let run = experiment.start();
         let recording = |(index, config): (usize, &Config)| ControllerRecording {
             stored: StoredRun::default(),
@@ -237,10 +237,10 @@ impl Simulation {
         };
         let recordings = experiment.configs().enumerate().map(recording).collect();
         Self {
-            scenario: Rc::clone(scenario),
+            scenario: Arc::clone(scenario),
             run,
             recordings,
-            experiment: Rc::clone(experiment),
+            experiment: Arc::clone(experiment),
             selected: 0,
             filter: Filter::default(),
             recorded: None,

@@ -8,7 +8,7 @@ use stepscope_motion::step_tables::{EntryFormat, Form, Stored, Tolerance, stored
 use stepscope_motion::{AxisPlan, ScheduledStep};
 use stepscope_peripheral::config::{Bus, Config};
 use stepscope_peripheral::{segment::PulseTimes, trace::Step, units::Cycles};
-use stepscope_scenario::{Problem, Scenario, of_config};
+use stepscope_scenario::{Problems, Scenario, of_config};
 use stepscope_sim::SelectedAxis;
 
 /// Step tables of one axis, in every form and entry format.
@@ -55,16 +55,16 @@ pub fn tolerance_cycles(error_us: f64, clock_hz: u32) -> Cycles {
 
 impl<'a> StepTables<'a> {
     /// Fails if the bus cannot run segments.
-    pub fn new(selected: SelectedAxis<'a>) -> Result<Self, Vec<Problem>> {
+    pub fn new(selected: SelectedAxis<'a>) -> Result<Self, Problems> {
         Self::with(selected.scenario, selected.bus, Steps::Planned(selected.plan))
     }
 
     /// Steps without a plan, in cycles of the scenario's clock; fails if the bus cannot run segments.
-    pub fn of_steps(scenario: &'a Scenario, bus: &Bus, steps: &[Step]) -> Result<Self, Vec<Problem>> {
+    pub fn of_steps(scenario: &'a Scenario, bus: &Bus, steps: &[Step]) -> Result<Self, Problems> {
         Self::with(scenario, bus, Steps::Actual(scheduled(steps)))
     }
 
-    fn with(scenario: &'a Scenario, bus: &Bus, steps: Steps<'a>) -> Result<Self, Vec<Problem>> {
+    fn with(scenario: &'a Scenario, bus: &Bus, steps: Steps<'a>) -> Result<Self, Problems> {
         let config = Config::of_segments(scenario.clock_hz, bus, &scenario.line.serial());
         Ok(Self { pulse: PulseTimes::from(&config.map_err(of_config)?), scenario, steps })
     }

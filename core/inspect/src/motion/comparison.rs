@@ -20,7 +20,7 @@ use stepscope_motion::moves::{
     Axis, Constant, Cosine, CosineMethod, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
     RampShape, Ramps, Staircase, Trapezoid, TrapezoidMethod,
 };
-use stepscope_motion::{AxisPlan, Peaks, Problem, motor::Motor, plan_axis};
+use stepscope_motion::{AxisPlan, Peaks, Problems, motor::Motor, plan_axis};
 
 /// Acceleration of a staircase's first level in steps/s^2; the others are multiples.
 const LEVEL_STEPS_S2: f64 = 1000.0;
@@ -235,7 +235,7 @@ pub struct Row {
     pub requested_move: Move,
     pub plan: Option<AxisPlan>,
     /// The cost, or the problems, with paths from `comparison.moves[0]`.
-    pub cost: Result<Cost, Vec<Problem>>,
+    pub cost: Result<Cost, Problems>,
 }
 
 /// One row for each of [`CANDIDATES`]. Each is planned as a scenario's move, within its ranges.

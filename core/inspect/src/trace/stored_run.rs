@@ -16,8 +16,8 @@ use stepscope_peripheral::signal::{Event, Record, Sink};
 use stepscope_peripheral::{trace::Digest, units::Instant};
 use stepscope_sim::{Experiment, Run};
 
-/// Maximum records of all controllers together, at 16 bytes each. A step has two.
-pub const MAX_RECORDS: u64 = 48_000_000;
+pub use stepscope_sim::MAX_RECORDS;
+
 /// Records between two calls of [`check_records`].
 pub const RECORDS_PER_CHECK: u64 = 1 << 16;
 

@@ -4,9 +4,9 @@
 mod motor;
 
 use crate::moves::{Axis, Move};
-use crate::problem::{Problem, ValueError};
+use crate::problem::ValueError;
 use crate::{
-    AxisPlan, Profile, limits, mechanics::Mechanics, planners::budget::Budget,
+    AxisPlan, Problems, Profile, limits, mechanics::Mechanics, planners::budget::Budget,
     planners::quantities::Quantities,
 };
 use alloc::{format, string::String, vec::Vec};
@@ -18,7 +18,7 @@ const MAX_DURATION_S: f64 = 1e6;
 /// Errors: every problem of every axis, each with its path.
 pub fn plan_lists<'a>(
     lists: impl IntoIterator<Item = (String, &'a [Axis])>,
-) -> Result<Vec<Vec<AxisPlan>>, Vec<Problem>> {
+) -> Result<Vec<Vec<AxisPlan>>, Problems> {
     let (mut plans, mut problems, mut budget) = (Vec::new(), Vec::new(), Budget::default());
     for (path, axes) in lists {
         let mut list = Vec::new();
@@ -31,12 +31,12 @@ pub fn plan_lists<'a>(
         }
         plans.push(list);
     }
-    if problems.is_empty() { Ok(plans) } else { Err(problems) }
+    Problems::check(problems).map(|()| plans)
 }
 
 /// Plans a single move with the default mechanics; `path` is its location in the scenario.
 /// Errors: every problem of the move, each with its path.
-pub fn plan_move(motion: &Move, path: &str) -> Result<AxisPlan, Vec<Problem>> {
+pub fn plan_move(motion: &Move, path: &str) -> Result<AxisPlan, Problems> {
     let mechanics = Mechanics::default();
     let mut quantities = Quantities::new(&mechanics, path);
     let profile = Profile::plan(&mut quantities, motion, &mut Budget::default());
@@ -48,11 +48,11 @@ pub fn plan_move(motion: &Move, path: &str) -> Result<AxisPlan, Vec<Problem>> {
 /// Distances are rounded half up to whole steps. An axis has at most 64 moves, 1e6 s, 1e6 rows of acceleration tables, and
 /// 65536 segments of sine quarters.
 /// Errors: every problem of the axis, each with its path.
-pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Vec<Problem>> {
+pub fn plan_axis(axis: &Axis, path: &str) -> Result<AxisPlan, Problems> {
     plan_within(axis, path, &mut Budget::default())
 }
 
-fn plan_within(axis: &Axis, path: &str, budget: &mut Budget) -> Result<AxisPlan, Vec<Problem>> {
+fn plan_within(axis: &Axis, path: &str, budget: &mut Budget) -> Result<AxisPlan, Problems> {
     let mut quantities = Quantities::new(&axis.mechanics, path);
     motor::check(&mut quantities, axis);
     quantities.validator.length("moves", axis.moves.len(), limits::MOVES, "moves");

@@ -10,8 +10,8 @@
 
 use super::AxesPath;
 use crate::problem::{Cause, Problem, ValueError};
-use crate::{AxisPlan, ScheduledStep};
-use alloc::{vec, vec::Vec};
+use crate::{AxisPlan, Problems, ScheduledStep};
+use alloc::vec::Vec;
 use stepscope_peripheral::{
     segment::{CheckedSegments, FRACTION_BITS, LAST_CYCLE, PulseTimes, Segment, SegmentList},
     units::Instant,
@@ -31,14 +31,14 @@ pub fn exact_segments(
     channels: u8,
     pulse: PulseTimes,
     clock_hz: u32,
-) -> Result<CheckedSegments, Vec<Problem>> {
+) -> Result<CheckedSegments, Problems> {
     if plans.len() > channels.into() {
         let cause = ValueError::Length { given: plans.len(), min: 1, max: channels.into(), of: "axes" };
-        return Err(vec![Problem::new(at.axes, cause)]);
+        return Err(Problem::new(at.axes, cause).into());
     }
     let steps = plans.iter().fold(0, |sum: u64, plan| sum.saturating_add(plan.step_count()));
     if steps > MAX_STEPS {
-        return Err(vec![Problem::new(at.whole, ValueError::too_much(steps, MAX_STEPS, "steps"))]);
+        return Err(Problem::new(at.whole, ValueError::too_much(steps, MAX_STEPS, "steps")).into());
     }
     let (mut lists, mut problems) = (Vec::new(), Vec::new());
     for (axis, plan) in plans.iter().enumerate() {
@@ -47,11 +47,10 @@ pub fn exact_segments(
             Err(cause) => problems.push(Problem::new(at.axis(axis), cause)),
         }
     }
-    if !problems.is_empty() {
-        return Err(problems);
-    }
+    Problems::check(problems)?;
     CheckedSegments::new(pulse, lists, 1).map_err(|refused| {
-        refused.iter().map(|list| Problem::new(at.axis(list.channel), Cause::EmptySegment)).collect()
+        let axis = refused.first().map_or(0, |refused| refused.channel);
+        Problem::new(at.axis(axis), Cause::EmptySegment).into()
     })
 }
 

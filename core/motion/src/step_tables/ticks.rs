@@ -9,8 +9,8 @@
 //! and the end is exact. The end of a tick is an integer cycle, for which the number of steps due is exact (`due_by`).
 
 use super::AxesPath;
-use crate::AxisPlan;
 use crate::problem::{Cause, Problem, ValueError};
+use crate::{AxisPlan, Problems};
 use alloc::{vec, vec::Vec};
 
 const MAX_TICKS: u64 = 2_000_000;
@@ -58,17 +58,17 @@ pub fn ticks(
     slots: u8,
     tick_cycles: u64,
     clock_hz: u32,
-) -> Result<Ticks, Vec<Problem>> {
+) -> Result<Ticks, Problems> {
     let (channels, tick_cycles) = (channels.max(1), tick_cycles.max(1));
     if plans.len() > channels.into() {
         let cause = ValueError::Length { given: plans.len(), min: 1, max: channels.into(), of: "axes" };
-        return Err(vec![Problem::new(at.axes, cause)]);
+        return Err(Problem::new(at.axes, cause).into());
     }
     let needed = plans.iter().map(|plan| plan.spans(tick_cycles, clock_hz)).max().unwrap_or(1);
     let all = needed.saturating_mul(channels.into());
     for (given, max, of) in [(needed, MAX_TICKS, "ticks"), (all, MAX_BYTES, "ticks of all channels")] {
         if given > max {
-            return Err(vec![Problem::new(at.whole, ValueError::too_much(given, max, of))]);
+            return Err(Problem::new(at.whole, ValueError::too_much(given, max, of)).into());
         }
     }
     let width = usize::from(channels);
@@ -81,7 +81,7 @@ pub fn ticks(
         }
     }
     debug_assert!(!bytes.is_empty() && bytes.len().is_multiple_of(width), "{} bytes of ticks", bytes.len());
-    if problems.is_empty() { Ok(Ticks { channels, bytes }) } else { Err(problems) }
+    Problems::check(problems).map(|()| Ticks { channels, bytes })
 }
 
 fn fill<'b>(

@@ -45,7 +45,7 @@ pub use self_test::{SelfTest, min_boot_time};
 
 use crate::config::{Config, Protocol};
 use crate::protocol::{Reason, Status};
-use crate::signal::{Event, Levels, MAX_CHANNELS, PacketOutcome, Record, Sink};
+use crate::signal::{Event, Levels, PacketOutcome, Record, Sink};
 use crate::units::Instant;
 use crate::wire::packet::{Tick, Unpacked, Unpacker};
 use crate::wire::uart::{Receiver, RxEvent};
@@ -98,9 +98,15 @@ impl Device {
         self.now
     }
 
-    /// Position counters: +1 per rising STEP edge with DIR 1, -1 with DIR 0.
-    pub const fn positions(&self) -> [i32; MAX_CHANNELS] {
-        self.executor.sequencer.positions()
+    /// Levels of all signals in the last cycle that was run; before cycle 0 all are low.
+    pub const fn levels(&self) -> Levels {
+        self.levels
+    }
+
+    /// Position counters of the channels in use: +1 per rising STEP edge with DIR 1, -1 with DIR 0.
+    pub fn positions(&self) -> &[i32] {
+        let channels = usize::from(self.latches.config.channels());
+        self.executor.sequencer.positions().get(..channels).unwrap_or_default()
     }
 
     /// Ticks done, wrapping.

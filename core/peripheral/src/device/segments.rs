@@ -12,12 +12,12 @@ use crate::device::Faults;
 use crate::segment::{CheckedSegments, FRACTION_BITS, Segment, SegmentList};
 use crate::signal::{Levels, MAX_CHANNELS, Record, Sink};
 use crate::units::{Cycles, Instant};
-use alloc::{rc::Rc, vec::Vec};
+use alloc::{sync::Arc, vec::Vec};
 
 /// Runs validated segments.
 ///
 /// ```
-/// use std::rc::Rc;
+/// use std::sync::Arc;
 /// use stepscope_peripheral::{device::SegmentEngine, segment::{CheckedSegments, PulseTimes, Segment, SegmentList},
 ///     signal::Record, units::{Cycles, Instant}};
 ///
@@ -25,7 +25,7 @@ use alloc::{rc::Rc, vec::Vec};
 /// let steps = Segment::Steps { count: 3, interval: 10 << 16, add: 0, right: true };
 /// let list = SegmentList { start: Instant(1), segments: vec![steps] };
 /// let lists = CheckedSegments::new(pulse, vec![list], 1).expect("valid segments");
-/// let mut engine = SegmentEngine::new(Rc::new(lists));
+/// let mut engine = SegmentEngine::new(Arc::new(lists));
 /// let mut trace: Vec<Record> = Vec::new();
 /// engine.run(Instant::NEVER, &mut trace);
 /// assert_eq!(engine.positions()[0], 3);
@@ -33,7 +33,7 @@ use alloc::{rc::Rc, vec::Vec};
 /// ```
 #[derive(Clone, Debug)]
 pub struct SegmentEngine {
-    lists: Rc<CheckedSegments>,
+    lists: Arc<CheckedSegments>,
     now: Instant,
     levels: Levels,
     channels: Vec<Channel>,
@@ -112,7 +112,7 @@ impl Channel {
 
 impl SegmentEngine {
     /// An engine before cycle 0.
-    pub fn new(lists: Rc<CheckedSegments>) -> Self {
+    pub fn new(lists: Arc<CheckedSegments>) -> Self {
         Self {
             channels: lists.lists().iter().map(Channel::new).collect(),
             lists,

@@ -78,8 +78,8 @@ impl Sequencer {
         self.ticks_done
     }
 
-    pub(super) const fn positions(&self) -> [i32; MAX_CHANNELS] {
-        self.positions
+    pub(super) const fn positions(&self) -> &[i32; MAX_CHANNELS] {
+        &self.positions
     }
 
     /// Queues a tick committed in cycle `now`; the caller has checked that there is room.

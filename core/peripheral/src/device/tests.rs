@@ -9,7 +9,7 @@ use crate::{
     units::Cycles,
     wire::{Line, Schedule, frame::encode_frame, packet::ALL},
 };
-use alloc::{rc::Rc, vec, vec::Vec};
+use alloc::{sync::Arc, vec, vec::Vec};
 
 const CLOCK_HZ: u32 = 1_600_000;
 const BAUD: u32 = 100_000;
@@ -75,7 +75,7 @@ fn run(bus: &Bus, protocol: Protocol, sends: &[(u64, Vec<u8>)]) -> (Device, Outp
     for (delivery, bytes) in sends {
         schedule.push(Instant(delivery - DELIVERY - BYTE * (bytes.len() as u64 - 1)), bytes);
     }
-    let line = || Line::new(Rc::new(schedule.clone()), &[], CLOCK_HZ, BAUD);
+    let line = || Line::new(Arc::new(schedule.clone()), &[], CLOCK_HZ, BAUD);
     let end = Instant(20_001);
     let (mut device, mut slow, mut clocked) = (Device::new(&config), line(), Output::default());
     while device.now() < end {
@@ -150,7 +150,7 @@ fn ignoring_ends_before_a_byte_delivered_in_the_cycle_of_the_gap() {
         schedule.push(Instant(byte - DELIVERY), &[1]);
         let start = Instant(P - DELIVERY);
         let forced = crate::wire::ForcedLevel { start, end: start + Cycles(BYTE), level: false };
-        let mut line = Line::new(Rc::new(schedule), &[forced], CLOCK_HZ, BAUD);
+        let mut line = Line::new(Arc::new(schedule), &[forced], CLOCK_HZ, BAUD);
         let (mut device, mut output) = (Device::new(&config), Output::default());
         while device.now() < Instant(10_000) {
             if line.next_change() == device.now() {
@@ -293,7 +293,7 @@ fn reading_what_is_driven_next_has_no_side_effect() {
     let status = encode_frame(&[0, Kind::Status as u8]);
     let mut schedule = Schedule::default();
     schedule.push(Instant(P - DELIVERY - BYTE * (status.len() as u64 - 1)), &status);
-    let mut line = Line::new(Rc::new(schedule), &[], CLOCK_HZ, BAUD);
+    let mut line = Line::new(Arc::new(schedule), &[], CLOCK_HZ, BAUD);
     // DISABLE in one cycle, ENABLE in another, and the reply of STATUS between.
     let (disable, enable, end) = (P - 100, P + 3000, Instant(P + 6000));
     let mut devices = [(); 2].map(|()| Device::new(&config));

@@ -8,7 +8,7 @@
 use crate::units::{Cycles, Instant};
 use crate::wire::{BitTimes, Schedule, Sender, frame::REPLY_LEN};
 use crate::{config::Config, signal::Levels};
-use alloc::rc::Rc;
+use alloc::sync::Arc;
 
 /// Bit times from the end of a frame to the rise of DE.
 const TURNAROUND_BITS: u64 = 10;
@@ -125,7 +125,7 @@ impl Transceiver {
         let fall = start + BitTimes::new(self.clock_hz, self.baud).bytes(bytes.len() as u64);
         let mut schedule = Schedule::default();
         schedule.push(start, bytes);
-        let sender = Sender::new(Rc::new(schedule), self.clock_hz, self.baud);
+        let sender = Sender::new(Arc::new(schedule), self.clock_hz, self.baud);
         self.reply = Some(Reply { rise, fall, sender });
         self.schedule_next(now);
         (start, fall)

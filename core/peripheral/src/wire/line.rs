@@ -2,14 +2,14 @@
 //! run skip the cycles between changes.
 //!
 //! ```
-//! use std::rc::Rc;
+//! use std::sync::Arc;
 //! use stepscope_peripheral::{config::{Bus, Config, SerialLine}, device::{Device, Faults}, signal::Record,
 //!     units::{Cycles, Instant}, wire::{ForcedLevel, Line, Schedule}};
 //!
 //! // A packet of one channel, and a break over its stop bit.
 //! let host = Schedule::paced(Instant(2000), Cycles(32_000), [[0x85]].iter());
 //! let broken = ForcedLevel { start: Instant(2000), end: Instant(5000), level: false };
-//! let mut line = Line::new(Rc::new(host), &[broken], 16_000_000, 115_200);
+//! let mut line = Line::new(Arc::new(host), &[broken], 16_000_000, 115_200);
 //!
 //! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("the defaults hold");
 //! let (mut device, mut trace) = (Device::new(&config), Vec::<Record>::new());
@@ -26,7 +26,7 @@
 
 use crate::units::Instant;
 use crate::wire::{Schedule, sender::Sender};
-use alloc::{collections::BTreeSet, rc::Rc, vec::Vec};
+use alloc::{collections::BTreeSet, sync::Arc, vec::Vec};
 
 /// A level that a fault forces on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ impl ForcedLevel {
 pub struct Line {
     sender: Sender,
     /// Invariant: disjoint and rising.
-    forced: Rc<Vec<ForcedLevel>>,
+    forced: Arc<Vec<ForcedLevel>>,
     ended: usize,
     /// The level forced in the current cycle.
     force: Option<bool>,
@@ -61,11 +61,11 @@ pub struct Line {
 
 impl Line {
     /// The line before cycle 1, idle. A rate of 0 counts as 1 baud.
-    pub fn new(schedule: Rc<Schedule>, forced: &[ForcedLevel], clock_hz: u32, baud: u32) -> Self {
+    pub fn new(schedule: Arc<Schedule>, forced: &[ForcedLevel], clock_hz: u32, baud: u32) -> Self {
         let sender = Sender::new(schedule, clock_hz, baud);
         let mut line = Self {
             sender,
-            forced: Rc::new(flatten(forced)),
+            forced: Arc::new(flatten(forced)),
             ended: 0,
             force: None,
             next: Instant::NEVER,
@@ -101,7 +101,7 @@ impl Line {
 
     /// Forces a level in future cycles; it replaces levels forced before.
     pub fn force(&mut self, new: ForcedLevel) {
-        let forced = Rc::make_mut(&mut self.forced);
+        let forced = Arc::make_mut(&mut self.forced);
         let first = forced.partition_point(|one| one.ends_by(new.start));
         let end = forced.partition_point(|one| !new.ends_by(one.start));
         let overlapping = forced.get(first..end).unwrap_or_default();
@@ -254,7 +254,7 @@ mod tests {
                 level,
             })
             .collect();
-        let mut line = Line::new(Rc::new(schedule), &forced, clock_hz, baud);
+        let mut line = Line::new(Arc::new(schedule), &forced, clock_hz, baud);
         let mut found = vec![];
         let mut level = true;
         while !line.is_over() {
@@ -319,7 +319,7 @@ mod tests {
         ];
         for (before, new, expected) in rows {
             let before: Vec<ForcedLevel> = before.iter().copied().map(span).collect();
-            let mut line = Line::new(Rc::new(Schedule::default()), &before, 100, 10);
+            let mut line = Line::new(Arc::new(Schedule::default()), &before, 100, 10);
             line.force(span(*new));
             let expected: Vec<ForcedLevel> = expected.iter().copied().map(span).collect();
             assert_eq!(line.forced(), expected, "{before:?} {new:?}");

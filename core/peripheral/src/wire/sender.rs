@@ -8,12 +8,12 @@
 //! ```
 //!
 //! ```
-//! use std::rc::Rc;
+//! use std::sync::Arc;
 //! use stepscope_peripheral::{units::Instant, wire::{Schedule, Sender}};
 //!
 //! let mut host = Schedule::default();
 //! host.push(Instant(100), &[0xf0]);
-//! let mut sender = Sender::new(Rc::new(host), 16_000_000, 1_000_000);
+//! let mut sender = Sender::new(Arc::new(host), 16_000_000, 1_000_000);
 //! let mut edges = Vec::new();
 //! while sender.next_edge() != Instant::NEVER {
 //!     edges.push(sender.next_edge().0);
@@ -25,13 +25,13 @@
 
 use crate::units::Instant;
 use crate::wire::{BitTimes, Schedule, bit_times::BYTE_BITS};
-use alloc::{rc::Rc, vec::Vec};
+use alloc::{sync::Arc, vec::Vec};
 use core::ops::Range;
 
 /// Sends the bytes of a schedule, edge by edge.
 #[derive(Clone, Debug)]
 pub struct Sender {
-    schedule: Rc<Schedule>,
+    schedule: Arc<Schedule>,
     times: BitTimes,
     sends_begun: usize,
     /// Start, bytes begun and indices of the remaining bytes of the last send begun.
@@ -48,7 +48,7 @@ pub struct Sender {
 
 impl Sender {
     /// A sender before its first byte. A rate of 0 counts as 1 baud.
-    pub fn new(schedule: Rc<Schedule>, clock_hz: u32, baud: u32) -> Self {
+    pub fn new(schedule: Arc<Schedule>, clock_hz: u32, baud: u32) -> Self {
         let mut sender = Self {
             schedule,
             times: BitTimes::new(clock_hz, baud),
@@ -71,7 +71,7 @@ impl Sender {
 
     /// Adds a send after all others.
     pub fn send(&mut self, start: Instant, bytes: &[u8]) {
-        Rc::make_mut(&mut self.schedule).push(start, bytes);
+        Arc::make_mut(&mut self.schedule).push(start, bytes);
         if self.edges == 0 {
             self.load_byte();
         }
@@ -79,7 +79,7 @@ impl Sender {
 
     /// Adds bytes to the last send. The first byte must not begin before the next cycle.
     pub fn extend(&mut self, bytes: &[u8]) {
-        let schedule = Rc::make_mut(&mut self.schedule);
+        let schedule = Arc::make_mut(&mut self.schedule);
         schedule.extend(bytes);
         if self.sends_begun == schedule.len() {
             self.remaining.end = schedule.total_bytes();
@@ -99,7 +99,7 @@ impl Sender {
         let mut schedule = Schedule::default();
         schedule.push(self.send_start, &remaining);
         (self.sends_begun, self.remaining) = (1, 0..remaining.len());
-        self.schedule = Rc::new(schedule);
+        self.schedule = Arc::new(schedule);
     }
 
     /// The level in the current cycle.
@@ -152,7 +152,7 @@ mod tests {
     fn sender(start: u64, bytes: &[u8]) -> Sender {
         let mut schedule = Schedule::default();
         schedule.push(Instant(start), bytes);
-        Sender::new(Rc::new(schedule), 21, 2)
+        Sender::new(Arc::new(schedule), 21, 2)
     }
 
     /// The next edges, at most `max`.

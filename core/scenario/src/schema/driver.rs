@@ -94,8 +94,8 @@ mod tests {
             (r#"{"driver_timing":{"rules":[1,1]}}"#, &["driver_timing.rules"]),
         ];
         for (json, expected) in rows {
-            let (scenario, mut problems) = Scenario::from_json_lenient(json);
-            problems.extend(scenario.check().err().unwrap_or_default());
+            let (scenario, unreadable) = Scenario::from_json_lenient(json);
+            let problems: Vec<_> = unreadable.into_iter().chain(scenario.check().err()).flatten().collect();
             let mut paths: Vec<String> = problems.into_iter().map(|problem| problem.path).collect();
             paths.sort();
             assert_eq!(paths, *expected, "{json}");

@@ -27,7 +27,7 @@ use alloc::{format, vec, vec::Vec};
 use stepscope_motion::mechanics::Distance;
 use stepscope_motion::moves::{Axis, Cosine, Move};
 use stepscope_peripheral::config::{Bus, Protocol};
-use stepscope_scenario::{Line, Motion, Noise, Problem, Scenario, Source, ValueError};
+use stepscope_scenario::{Line, Motion, Noise, Problem, Problems, Scenario, Source, ValueError};
 use watch::Watch;
 
 /// Maximum noise rates, in the order of the fields: a frame of 30 bytes and its reply still pass once in ten attempts.
@@ -49,11 +49,11 @@ pub struct FaultSweep {
 
 impl FaultSweep {
     /// Seeds replace the noise and the receiver rates of `base`. Errors: every problem, and a source without ticks.
-    pub fn new(base: Scenario) -> Result<Self, Vec<Problem>> {
+    pub fn new(base: Scenario) -> Result<Self, Problems> {
         let experiment = Experiment::new(&base)?;
         if (0..experiment.controllers()).all(|index| experiment.ticks_of(index).is_empty()) {
             let detail = "the scenario has no ticks to disturb; use a source of kind motion or packets";
-            return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
+            return Err(Problem::new("source", ValueError::Conflict { detail }).into());
         }
         Ok(Self { base })
     }
@@ -113,7 +113,7 @@ impl FaultSweep {
     }
 
     /// Errors: a receiver rate with too short bits.
-    pub fn run(&self, seed: u32) -> Result<Tally, Vec<Problem>> {
+    pub fn run(&self, seed: u32) -> Result<Tally, Problems> {
         let scenario = self.scenario(seed);
         let experiment = Experiment::new(&scenario)?;
         let mut watches = vec![Watch::default(); experiment.controllers()];
@@ -158,7 +158,7 @@ fn tally(scenario: &Scenario, experiment: &Experiment, run: &Run, watches: &[Wat
         }
         tally.add_alignment(&Alignment::of(due, &executed, channels));
         let positions = run.devices().nth(index).map(|device| device.positions()).unwrap_or_default();
-        tally.position_error += align::distance(due, channels, &positions);
+        tally.position_error += align::distance(due, channels, positions);
     }
     match run.host() {
         Some(host) => tally.add_host(host.conversation().counts()),

@@ -21,7 +21,7 @@ pub use input::Input;
 pub use panel::MAX_RECORDED_INPUTS;
 
 use crate::{Experiment, Run, replayed};
-use alloc::{collections::VecDeque, rc::Rc, vec, vec::Vec};
+use alloc::{collections::VecDeque, sync::Arc, vec, vec::Vec};
 use core::fmt;
 use stepscope_controller::input::{Change, Signal};
 use stepscope_controller::{NotEntered, StandAlone};
@@ -30,7 +30,7 @@ use stepscope_peripheral::units::{Cycles, Instant};
 use stepscope_peripheral::wire::{BitTimes, bit_times::BYTE_BITS};
 use stepscope_peripheral::{config::Protocol, trace::Digest};
 use stepscope_scenario::{
-    END_OF_TIME, Hex, Host, LineScript, Noise, Problem, Scenario, ScriptedSend, Source, ValueError,
+    END_OF_TIME, Hex, Host, LineScript, Noise, Problem, Problems, Scenario, ScriptedSend, Source, ValueError,
 };
 
 /// Maximum recorded bytes, as in a line script.
@@ -72,7 +72,7 @@ pub struct ReplyByte {
 pub struct Session {
     /// The recording without its sends and its length.
     blank: Scenario,
-    experiment: Rc<Experiment>,
+    experiment: Arc<Experiment>,
     run: Run,
     times: BitTimes,
     /// Replies use the controllers' own rates.
@@ -87,7 +87,7 @@ pub struct Session {
     replies_from: Instant,
     digests: Vec<Digest>,
     /// The recording, once it has reached its limit.
-    full_recording: Option<Rc<Recording>>,
+    full_recording: Option<Arc<Recording>>,
     presses: panel::Presses,
 }
 
@@ -107,10 +107,10 @@ fn blank(scenario: &Scenario) -> Scenario {
 
 impl Session {
     /// Ignores sends, presses, length, host and noise. Errors: every problem, and segments, which have no line.
-    pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+    pub fn new(scenario: &Scenario) -> Result<Self, Problems> {
         if scenario.source.uses_segments() {
             let detail = "segments run without a serial line; use ticks, packets or a line script";
-            return Err(vec![Problem::new("source", ValueError::Conflict { detail })]);
+            return Err(Problem::new("source", ValueError::Conflict { detail }).into());
         }
         let blank = blank(scenario);
         let experiment = Experiment::new(&blank)?;
@@ -131,7 +131,7 @@ impl Session {
             replies: VecDeque::new(),
             replies_from: Instant::RESET,
             digests: vec![Digest::default(); experiment.controllers()],
-            experiment: Rc::new(experiment),
+            experiment: Arc::new(experiment),
             full_recording: None,
             presses: panel::Presses::default(),
         };
@@ -275,7 +275,7 @@ impl Session {
     }
 
     fn end_recording(&mut self) {
-        self.full_recording = Some(Rc::new(self.recording_to_now()));
+        self.full_recording = Some(Arc::new(self.recording_to_now()));
     }
 
     /// Runs up to and including cycle `to`, with a sink per controller.
@@ -405,7 +405,7 @@ fn panel_digest(run: &Run) -> Option<u64> {
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotTheSession {
     /// The scenario of the recording has problems.
-    Refused(Vec<Problem>),
+    Refused(Problems),
     /// The trace of a controller has another digest.
     Differs { controller: usize, session: u64, replay: u64 },
     /// The panels have another digest.

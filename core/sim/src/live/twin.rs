@@ -21,7 +21,7 @@ use stepscope_peripheral::units::{Cycles, Instant};
 use stepscope_peripheral::wire::frame::{Deframed, Deframer, Frame, Ticks, emit};
 use stepscope_peripheral::wire::schedule::line_time;
 use stepscope_peripheral::{device::Faults, signal::Positions, trace::Digest};
-use stepscope_scenario::{Problem, Scenario};
+use stepscope_scenario::{Problems, Scenario};
 
 /// Maximum cycles to wait until the model is idle.
 const MAX_WAIT: u64 = 20_000_000_000;
@@ -55,7 +55,7 @@ pub struct Twin {
 
 impl Twin {
     /// Resets the controllers and waits until they are idle. Errors: every problem, and segments, which have no line.
-    pub fn new(scenario: &Scenario) -> Result<Self, Vec<Problem>> {
+    pub fn new(scenario: &Scenario) -> Result<Self, Problems> {
         let mut session = Session::new(&Scenario { plant: None, ..scenario.clone() })?;
         run_until_idle(&mut session);
         let controllers = session.experiment().controllers();
@@ -170,11 +170,9 @@ impl Twin {
         let opening = self.opening.get(controller)?;
         let device = self.session.run().devices().nth(controller)?;
         let status = device.status()?;
-        let channels = usize::from(self.session.experiment().configs().nth(controller)?.channels());
         let start = opening.positions.as_ref().map_or(&[][..], Positions::as_slice);
         let start = start.iter().chain(core::iter::repeat(&0));
-        let positions = device.positions();
-        let travel = positions.iter().take(channels).zip(start).map(|(now, start)| now.wrapping_sub(*start));
+        let travel = device.positions().iter().zip(start).map(|(now, start)| now.wrapping_sub(*start));
         let done = status.ticks_done.wrapping_sub(opening.status.map_or(0, |opening| opening.ticks_done));
         Some((status, done, travel.collect()))
     }

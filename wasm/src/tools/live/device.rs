@@ -156,16 +156,15 @@ impl LiveDevice {
         let devices = session.run().devices().zip(experiment.configs()).enumerate();
         let controllers = devices.map(|(index, (device, config))| {
             let status = device.status();
-            let positions: Vec<i32> =
-                device.positions().iter().take(config.channels().into()).copied().collect();
-            let curve = |trace: &LiveTrace| trace.positions(&positions, (from, to), CURVE_POINTS).channels;
+            let positions = device.positions();
+            let curve = |trace: &LiveTrace| trace.positions(positions, (from, to), CURVE_POINTS).channels;
             let queued = |free: u8| config.queue_depth() - free.min(config.queue_depth());
             ControllerState {
                 state: status.map(|status| status.state.name()),
                 queued: status.map(|status| queued(status.free)),
                 queue_depth: config.queue_depth(),
                 curves: drawn.get(index).map(curve).unwrap_or_default(),
-                positions,
+                positions: positions.to_vec(),
                 faults: device.faults().names().map(|name| name.to_string()).collect(),
                 ticks_done: device.ticks_done(),
             }

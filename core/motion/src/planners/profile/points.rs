@@ -130,7 +130,7 @@ mod tests {
             let given = Points { unit, interpolation: straight, points };
             let axis = Axis { moves: vec![Move::Points(given)], ..Axis::default() };
             let found: Vec<_> =
-                plan_axis(&axis, "axis").err().unwrap_or_default().iter().map(ToString::to_string).collect();
+                plan_axis(&axis, "axis").err().iter().flatten().map(ToString::to_string).collect();
             let expected: Vec<_> =
                 expected.iter().map(|text| alloc::format!("axis.moves[0].points.{text}")).collect();
             assert_eq!(found, expected);

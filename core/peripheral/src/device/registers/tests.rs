@@ -8,7 +8,7 @@ use crate::{
     units::Cycles,
     wire::{Line, Schedule, frame::emit},
 };
-use alloc::{rc::Rc, vec, vec::Vec};
+use alloc::{sync::Arc, vec, vec::Vec};
 use map::{
     RegisterBus,
     control::{COMMIT, DISABLE, ENABLE, STOP},
@@ -238,7 +238,7 @@ fn a_reply_to_positions_has_the_values_of_the_registers_in_its_cycle() {
         // Eight bytes, the last one delivered 152 cycles after its start.
         let mut schedule = Schedule::default();
         schedule.push(Instant(p - 7 * 160 - 152), &emit(0, Kind::Positions as u8, &[]));
-        let mut line = Line::new(Rc::new(schedule), &[], 1_600_000, serial.baud);
+        let mut line = Line::new(Arc::new(schedule), &[], 1_600_000, serial.baud);
         let mut bench = Bench::new(&bus, &serial);
         while bench.device.now() <= Instant(p) {
             let now = bench.device.now();

@@ -68,7 +68,7 @@ fn difference(commanded: &[u8], executed: &[u8], channels: usize) -> (usize, usi
 }
 
 /// Distance of the positions from the sums of the ticks, in steps over all channels.
-pub(super) fn distance(commanded: &[u8], channels: usize, positions: &[i32; MAX_CHANNELS]) -> u64 {
+pub(super) fn distance(commanded: &[u8], channels: usize, positions: &[i32]) -> u64 {
     let mut expected = [0_i64; MAX_CHANNELS];
     for tick in commanded.chunks(channels) {
         expected.iter_mut().zip(tick).for_each(|(sum, &byte)| *sum += steps(byte));

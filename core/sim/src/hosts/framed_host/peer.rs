@@ -1,7 +1,7 @@
 //! The host's state of one controller on a framed line: its job, its progress, and what its replies change.
 
 use super::tick_sums::TickSums;
-use alloc::{rc::Rc, vec::Vec};
+use alloc::{sync::Arc, vec::Vec};
 use core::fmt;
 use stepscope_peripheral::signal::Positions;
 use stepscope_peripheral::units::{Cycles, Instant};
@@ -19,7 +19,7 @@ pub struct Job {
     /// Ticks that the controller can queue.
     pub queue_depth: u8,
     /// One byte per channel, tick after tick.
-    pub commands: Rc<[u8]>,
+    pub commands: Arc<[u8]>,
 }
 
 impl Job {
@@ -215,7 +215,7 @@ impl Peer {
     pub(super) fn new(job: Job, settings: &Settings, start: Instant) -> Self {
         Self {
             max_ticks_per_frame: job.ticks_per_frame(settings).into(),
-            sums: TickSums::new(Rc::clone(&job.commands), job.channels),
+            sums: TickSums::new(Arc::clone(&job.commands), job.channels),
             progress: Progress::Opening,
             stop_stage: Kind::Stop,
             known: Known::default(),

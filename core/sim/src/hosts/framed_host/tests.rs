@@ -1,7 +1,7 @@
 //! A host and a controller with someone between them: every fault of one frame, one after the other.
 
 use super::*;
-use alloc::{rc::Rc, string::ToString};
+use alloc::{string::ToString, sync::Arc};
 use stepscope_peripheral::{
     config::{Bus, Config, Protocol},
     device::Device,
@@ -47,7 +47,7 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
     let settings = Settings { ticks_per_frame: 2, ..Settings::default() };
     let mut host =
         FramedHost::new(alloc::vec![job], &settings, (CLOCK_HZ, BAUD, config.bit()), Instant(6), None);
-    let quiet = || Line::new(Rc::new(Schedule::default()), &[], CLOCK_HZ, BAUD);
+    let quiet = || Line::new(Arc::new(Schedule::default()), &[], CLOCK_HZ, BAUD);
     let (mut meant, mut line) = (quiet(), quiet());
     let (mut device, mut ticks, mut frames) = (Device::new(&config), Executed::default(), Vec::new());
     for now in 0..1_000_000 {

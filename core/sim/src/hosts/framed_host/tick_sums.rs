@@ -1,20 +1,20 @@
 //! The sums of ticks' steps per channel, modulo 2^32 like position counters (DESIGN A3).
 
-use alloc::rc::Rc;
+use alloc::sync::Arc;
 use stepscope_peripheral::signal::MAX_CHANNELS;
 use stepscope_peripheral::wire::packet::ChannelCommand;
 
 /// The sums of the first ticks of a job, stored so that each tick is added once.
 #[derive(Clone, Debug)]
 pub(super) struct TickSums {
-    commands: Rc<[u8]>,
+    commands: Arc<[u8]>,
     channels: u8,
     ticks: u32,
     sums: [i32; MAX_CHANNELS],
 }
 
 impl TickSums {
-    pub(super) fn new(commands: Rc<[u8]>, channels: u8) -> Self {
+    pub(super) fn new(commands: Arc<[u8]>, channels: u8) -> Self {
         let channels = channels.clamp(1, MAX_CHANNELS as u8);
         Self { commands, channels, ticks: 0, sums: [0; MAX_CHANNELS] }
     }

@@ -1,0 +1,15 @@
+//! Runs one turn, and compares its step times with those of a step generator.
+//!
+//! `cargo run -p stepscope-core --example turn`
+
+use stepscope_core::prelude::*;
+
+fn main() -> Result<(), Problems> {
+    let scenario: Scenario = include_str!("turn.json").parse()?;
+    let due = step_times(&scenario, 0)?; // where the plan wants each step, in cycles from the start
+    let run = run(&scenario)?; // what the motors are given, to the clock cycle
+    println!("{} steps, digest {:016x}", due.len(), run.digest());
+    assert_eq!(run.positions(), [3200]);
+    assert_eq!(first_difference(&due, &due, Cycles(16)), None); // the second: your own step generator's
+    Ok(())
+}

@@ -1,0 +1,15 @@
+//! What most programs need, as far as the enabled features have it: `use stepscope_core::prelude::*`.
+
+pub use crate::first_difference::first_difference;
+#[cfg(feature = "motion")]
+pub use stepscope_motion::ScheduledStep;
+pub use stepscope_peripheral::config::Config;
+pub use stepscope_peripheral::device::{Device, ModelBus};
+pub use stepscope_peripheral::signal::{Levels, Record};
+pub use stepscope_peripheral::trace::{Digest, Step};
+pub use stepscope_peripheral::units::{Cycles, Instant};
+pub use stepscope_registers::RegisterBus;
+#[cfg(feature = "scenario")]
+pub use stepscope_scenario::{Problem, Problems, Scenario};
+#[cfg(feature = "sim")]
+pub use stepscope_sim::{ControllerRun, Experiment, FinishedRun, run, step_times};
