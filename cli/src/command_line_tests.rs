@@ -15,6 +15,9 @@ const LINES: &[&str] = &[
     "faults {file} --seed 1 --write-scenario {write_scenario}",
     "tables {scenario} --steps {steps} --check {check} --out {out}",
     "measures {scenario} --out {out}",
+    "steps {scenario} --out {out}",
+    "curve {scenario} --out {out}",
+    "spectrum {scenario} --out {out}",
     "torque {scenario} --out {out}",
     "plant {scenario} --csv {csv} --vcd {vcd}",
     "settling {scenario} --write-scenario {write_scenario}",
@@ -30,6 +33,7 @@ const LINES: &[&str] = &[
     "points {table} --out {out}",
     "open link --out {out}",
     "presets --out {out}",
+    "schema --out {out}",
     "completions bash --out {out}",
 ];
 

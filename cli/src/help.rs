@@ -113,6 +113,33 @@ pub(crate) const PAGES: &[Page] = &[
         ],
     ),
     page(
+        "steps",
+        READ,
+        SCENARIO,
+        [
+            "stepscope steps song-2021-one-turn -o steps.csv",
+            "stepscope steps framed-link --axis 1 --format npy -o steps.npy",
+        ],
+    ),
+    page(
+        "curve",
+        READ,
+        SCENARIO,
+        [
+            "stepscope curve song-2021-one-turn -o curve.csv",
+            "stepscope curve song-2021-one-turn --points 200 --format json",
+        ],
+    ),
+    page(
+        "spectrum",
+        READ,
+        SCENARIO,
+        [
+            "stepscope spectrum sine-2022-d00054",
+            "stepscope spectrum sine-2022-d00054 --of ideal --format json -o spectrum.json",
+        ],
+    ),
+    page(
         "torque",
         READ,
         SCENARIO,
@@ -240,6 +267,7 @@ pub(crate) const PAGES: &[Page] = &[
         "there is no preset of this name, or the command line is invalid",
         ["stepscope presets", "stepscope presets framed-link -o mine.json"],
     ),
+    page("schema", WRITTEN, LINE, ["stepscope schema", "stepscope schema -o scenario.schema.json"]),
     page("drivers", "", LINE, ["stepscope drivers", "stepscope drivers --json"]),
     page(
         "completions",

@@ -1,5 +1,6 @@
 //! The `stepscope` command. Results go to standard output, errors to standard error.
 
+mod axis_data;
 mod calibrate;
 mod capture;
 #[cfg(test)]
@@ -32,6 +33,7 @@ mod run;
 mod run_recording;
 mod scenario_file;
 mod scenarios;
+mod schema;
 mod sine;
 mod status;
 mod steps;
@@ -81,6 +83,19 @@ enum Command {
     ///
     /// Compares the ideal curve, the planned steps and the actual pulses.
     Measures(measures::Arguments),
+    /// Write the steps of an axis: cycle, time and direction
+    ///
+    /// The table can be read by `stepscope tables --steps`.
+    Steps(axis_data::StepsArguments),
+    /// Write the ideal curve of an axis: position, speed and acceleration over time
+    ///
+    /// Positions are in steps, speeds in steps/s, accelerations in steps/s^2.
+    Curve(axis_data::CurveArguments),
+    /// Write the spectrum of an axis: peak amplitude of each harmonic
+    ///
+    /// The number of harmonics is the scenario's analysis.max_harmonic. JSON also has the distortion (THD) as a ratio,
+    /// null if the motion is not periodic, and the analyzed time.
+    Spectrum(axis_data::SpectrumArguments),
     /// Check that the motors have enough torque for the planned motion
     ///
     /// Also reports feasible ramps, or writes the torque-speed curve of a motor.
@@ -116,6 +131,10 @@ enum Command {
     Open(scenarios::OpenArguments),
     /// List the presets, or write one as JSON
     Presets(scenarios::PresetsArguments),
+    /// Write the JSON Schema of a scenario (draft 2020-12)
+    ///
+    /// Editors use it to complete and check fields. Rules between fields are checked by `stepscope run`.
+    Schema(schema::Arguments),
     /// List the drivers that --driver accepts, with their limits and sources
     Drivers(options::Json),
     /// Write a completion script for a shell
@@ -170,6 +189,9 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Faults(arguments) => faults::faults(&arguments),
         Command::Tables(arguments) => tables::tables(&arguments),
         Command::Measures(arguments) => measures::measures(&arguments),
+        Command::Steps(arguments) => axis_data::steps(&arguments),
+        Command::Curve(arguments) => axis_data::curve(&arguments),
+        Command::Spectrum(arguments) => axis_data::spectrum(&arguments),
         Command::Torque(arguments) => torque::torque(&arguments),
         Command::Plant(arguments) => plant::plant(&arguments),
         Command::Settling(arguments) => limits::settling(&arguments),
@@ -182,6 +204,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Points(arguments) => points::points(&arguments),
         Command::Open(arguments) => scenarios::open(&arguments),
         Command::Presets(arguments) => scenarios::presets(&arguments),
+        Command::Schema(arguments) => schema::schema(&arguments),
         Command::Drivers(arguments) => timing::drivers(arguments.json),
         Command::Completions { shell, out } => complete::write_script(shell, &out.out),
         Command::Man { dir } => manual::write_pages(dir.as_deref(), command_line()),

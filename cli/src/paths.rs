@@ -22,6 +22,9 @@ pub(crate) const PATHS: &[Paths] = &[
     row("faults", &["file"], &["write_scenario"]),
     row("tables", &["scenario", "steps", "check"], &["out"]),
     row("measures", &["scenario"], &["out"]),
+    row("steps", &["scenario"], &["out"]),
+    row("curve", &["scenario"], &["out"]),
+    row("spectrum", &["scenario"], &["out"]),
     row("torque", &["scenario"], &["out"]),
     row("plant", &["scenario"], &["csv", "vcd"]),
     row("settling", &["scenario"], &["write_scenario"]),
@@ -41,6 +44,7 @@ pub(crate) const PATHS: &[Paths] = &[
     row("points", &["table"], &["out"]),
     row("open", &[], &["out"]),
     row("presets", &[], &["out"]),
+    row("schema", &[], &["out"]),
     row("completions", &[], &["out"]),
     // A folder of files with fixed names.
     Paths { other: &["dir"], ..row("man", &[], &[]) },

@@ -141,7 +141,7 @@ fn suggests_similar_names() {
     }
     let (_, _, err) = stepscope(&["run", "-"], r#"{"temperature": 1}"#);
     assert!(err.contains("temperature") && !err.contains("similar name"), "{err}");
-    assert_eq!(commands(&[]).len(), 21, "a new command has a page in cli/src/help.rs");
+    assert_eq!(commands(&[]).len(), 25, "a new command has a page in cli/src/help.rs");
 }
 
 #[test]
@@ -158,6 +158,10 @@ fn writes_standard_output_to_a_file_with_o() {
         (&["measures", "framed-link"], ""),
         (&["measures", "framed-link", "--json"], ""),
         (&["measures", "two-controllers-raw", "--format", "csv"], ""),
+        (&["steps", "framed-link"], ""),
+        (&["curve", "framed-link", "--format", "json"], ""),
+        (&["spectrum", "sine-2022-d00054"], ""),
+        (&["schema"], ""),
         (&["resonance", "-", "--to", "20"], r#"{"plant":{}}"#),
         (&["completions", "zsh"], ""),
         (&["sine", "vertices", "--segments", "2"], ""),

@@ -197,6 +197,9 @@ fn accepts_preset_names_in_place_of_files() {
     for arguments in [
         &["run"] as &[&str],
         &["measures"],
+        &["steps"],
+        &["curve"],
+        &["spectrum"],
         &["tables", "--form", "compressed"],
         &["faults", "--seeds", "2"],
         &["run", "--link"],

@@ -7,8 +7,8 @@
 //!     .term("Slot", "A tick is divided into slots. …").from(PATENT),   help card and its source
 //! ```
 //!
-//! `rows` derives the reader and the writer of JSON, `ranges` the check of single fields, [`markdown`] docs/scenario.md, and
-//! [`describe`] the page's form and help.
+//! `rows` derives the reader and the writer of JSON, `ranges` the check of single fields, [`markdown`] docs/scenario.md,
+//! [`describe`] the page's form and help, and [`json_schema`] `stepscope schema`.
 //!
 //! `settings!` declares a struct with its rows, `choices!` an enum with its kinds. Types of other crates get rows by
 //! `fields!` and `kinds!`; those crates check the ranges. `words!` declares choices without settings.
@@ -29,6 +29,7 @@ mod controller;
 mod describe;
 mod driver;
 mod experiment;
+mod json_schema;
 mod line;
 mod markdown;
 mod mechanics;
@@ -45,6 +46,7 @@ pub use controller::Controller;
 pub use describe::describe;
 pub use driver::{DriverModel, DriverTiming, TimingRules};
 pub use experiment::{Analysis, Scenario};
+pub use json_schema::json_schema;
 pub use line::{Glitch, Host, Line, Noise};
 pub use markdown::markdown;
 pub use plant::{CurrentSensor, Encoder, PlantMotor, PlantSettings, Protection};
