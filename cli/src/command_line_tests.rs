@@ -24,6 +24,7 @@ const LINES: &[&str] = &[
     "limits {scenario}",
     "resonance {scenario} --out {out}",
     "capture {file} --against {against} --driver {driver} --late {late} --write-scenario {write_scenario} --steps {steps} --bytes {bytes} --packets {packets} --trace {trace} --vcd {vcd} --csv {csv} --violations {violations}",
+    "check {file} --junit {junit} --summary {summary}",
     "powercut {scenario}",
     "calibrate {table}",
     "sine sweep --out {out}",

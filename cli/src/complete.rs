@@ -34,6 +34,7 @@ pub(crate) fn write_script(shell: Shell, out: &Path) -> Result<(), Failure> {
 pub(crate) fn completer(command: &str, id: &str) -> Option<ArgValueCompleter> {
     let is_read = paths::of(command).is_some_and(|paths| paths.read.contains(&id));
     match (command, id) {
+        ("check", "file") => None,
         ("presets", "id") => Some(ArgValueCompleter::new(presets)),
         ("capture", "file") => Some(ArgValueCompleter::new(|given: &OsStr| files_and(given, samples(given)))),
         (_, "driver") => Some(ArgValueCompleter::new(|given: &OsStr| files_and(given, drivers(given)))),

@@ -194,6 +194,18 @@ pub(crate) const PAGES: &[Page] = &[
         )
     },
     Page {
+        three: "a check failed",
+        ..page(
+            "check",
+            "the list or a file of a check could not be read, or a file could not be written",
+            "the list, a file of a check or the command line is invalid",
+            [
+                r#"echo '{"checks": [{"run": "framed-link"}]}' | stepscope check -"#,
+                r#"echo '{"checks": [{"run": "framed-link"}]}' | stepscope check - --junit junit.xml --summary summary.md"#,
+            ],
+        )
+    },
+    Page {
         three: "a wrong position was trusted after a power cut",
         ..page(
             "powercut",

@@ -3,6 +3,7 @@
 mod axis_data;
 mod calibrate;
 mod capture;
+mod check;
 #[cfg(test)]
 mod command_line_tests;
 mod complete;
@@ -115,6 +116,11 @@ enum Command {
     /// Reports steps and bytes, checks a driver's timing, compares with a scenario's run, or writes a scenario that
     /// reproduces the recording.
     Capture(capture::Arguments),
+    /// Check recordings, runs and tables of a project, as in CI
+    ///
+    /// Makes each check of a list and prints a line for each: a recording against a scenario, the digest and the
+    /// driver timing of a run, a table against its scenario.
+    Check(check::Arguments),
     /// Cut the power of stand-alone controllers and check the restored position
     ///
     /// Counts the power cuts after which the position is known, known to be lost, or wrong without notice. Also finds
@@ -198,6 +204,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Limits(arguments) => limits::limits(&arguments),
         Command::Resonance(arguments) => limits::resonance(&arguments),
         Command::Capture(arguments) => capture::capture(&arguments),
+        Command::Check(arguments) => check::check(&arguments),
         Command::Powercut(arguments) => powercut::powercut(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sine(command) => sine::sine(&command),

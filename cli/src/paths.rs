@@ -35,6 +35,7 @@ pub(crate) const PATHS: &[Paths] = &[
         &["file", "against", "driver"],
         &["late", "write_scenario", "steps", "bytes", "packets", "trace", "vcd", "csv", "violations"],
     ),
+    row("check", &["file"], &["junit", "summary"]),
     row("powercut", &["scenario"], &[]),
     row("calibrate", &["table"], &[]),
     row("sine sweep", &[], &["out"]),

@@ -26,6 +26,7 @@ const READERS: &[(&[&str], &[&str])] = &[
     (&["resonance"], &[]),
     (&["capture"], &[]),
     (&["capture", "recorded-step-table", "--against"], &[]),
+    (&["check"], &[]),
     (&["powercut"], &[]),
     (&["calibrate"], &[]),
     (&["sine", "segments"], &[]),

@@ -6,6 +6,7 @@
 mod axis_data;
 mod capture;
 mod capture_maps;
+mod check;
 mod command;
 mod compared;
 mod controller;

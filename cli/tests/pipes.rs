@@ -47,6 +47,7 @@ fn inputs() -> Vec<(&'static [&'static str], &'static [&'static str], &'static s
         (&["capture"], &[], dump),
         (&["capture", "recorded-step-table", "--against"], &["--json"], "{}"),
         (&["capture", "recorded-step-table", "--driver"], &[], r#"{"step_high_ns":1}"#),
+        (&["check"], &[], r#"{"checks":[{"run":"framed-link"}]}"#),
         (&["powercut"], &["--cuts", "2"], preset("zhang-2012-controller")),
         (&["calibrate"], &[], "length_mm,steps\n100,3995\n200,8005\n300,12010\n"),
         (&["sine", "segments"], &[], preset("sine-2022-d00054")),

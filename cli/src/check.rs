@@ -1,0 +1,146 @@
+//! `stepscope check`: recordings, runs and tables of a project, checked as in CI.
+//!
+//! ```text
+//! stepscope-checks.json -> one call of stepscope per check, in the folder of that file -> lines, JUnit, Markdown
+//! ```
+
+mod entry;
+mod report;
+
+use crate::failure::{Failure, INTERRUPTED};
+use crate::output::{Outputs, STANDARD};
+use crate::{scenarios, terminal};
+use clap::Args;
+use entry::{Entry, Kind};
+use report::{Outcome, Result, Results};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// List of checks (format: docs/command.md); `-` reads standard input
+    ///
+    /// Paths in it count from its folder.
+    #[arg(default_value = "stepscope-checks.json")]
+    file: PathBuf,
+    /// Write the results as JUnit XML
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Write the results as a Markdown table
+    #[arg(long, value_name = "FILE")]
+    summary: Option<PathBuf>,
+}
+
+pub(crate) fn check(arguments: &Arguments) -> std::result::Result<(), Failure> {
+    let entries = entry::read(&arguments.file, &scenarios::text(&arguments.file)?)?;
+    let mut outputs = Outputs::default();
+    let mut create = |path: &Option<PathBuf>| path.as_ref().map(|path| outputs.create(path)).transpose();
+    let (junit, summary) = (create(&arguments.junit)?, create(&arguments.summary)?);
+    let is_report_printed =
+        [&arguments.junit, &arguments.summary].into_iter().flatten().any(|path| path == Path::new(STANDARD));
+    let folder = match arguments.file.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let mut results = Results::default();
+    for entry in &entries {
+        let start = Instant::now();
+        let outcome = outcome_of(entry, folder)?;
+        let result = Result { entry, outcome, seconds: start.elapsed().as_secs_f64() };
+        if !is_report_printed {
+            writeln!(terminal::out(), "{result}").map_err(Failure::output)?;
+        }
+        results.add(result);
+    }
+    for (path, out, write) in [
+        (&arguments.junit, junit, report::write_junit as report::Writer),
+        (&arguments.summary, summary, report::write_markdown),
+    ] {
+        if let (Some(path), Some(mut out)) = (path, out) {
+            let written = write(&results, &mut out).and_then(|()| out.flush());
+            written.map_err(|error| Failure::File(path.clone(), error))?;
+        }
+    }
+    outputs.commit()?;
+    if !is_report_printed {
+        writeln!(terminal::out(), "{results}").map_err(Failure::output)?;
+    }
+    results.failure().map_or(Ok(()), Err)
+}
+
+/// What a call of the command printed.
+struct Called {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+/// Calls this program itself: a check is what its user can call by hand.
+fn call(folder: &Path, words: &[String]) -> std::result::Result<Called, Failure> {
+    let failed = |error| Failure::File(PathBuf::from("stepscope"), error);
+    let program = std::env::current_exe().map_err(failed)?;
+    let mut command = Command::new(program);
+    command.args(words).current_dir(folder).stdin(Stdio::null());
+    let output = command.output().map_err(failed)?;
+    let code = output.status.code().unwrap_or(i32::from(INTERRUPTED));
+    if code == i32::from(INTERRUPTED) {
+        return Err(Failure::Interrupted);
+    }
+    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    Ok(Called { code, out: text(output.stdout), err: text(output.stderr) })
+}
+
+fn outcome_of(entry: &Entry, folder: &Path) -> std::result::Result<Outcome, Failure> {
+    Ok(match &entry.kind {
+        Kind::Capture { against, .. } => {
+            let is_strict = entry.driver.is_some() || has_driver(folder, against);
+            let called = call(folder, &entry.capture_words(is_strict))?;
+            Outcome::of_code(called.code, &called.err)
+        }
+        Kind::Run { scenario, digest } => {
+            let is_strict = entry.driver.is_some() || has_driver(folder, scenario);
+            let called = call(folder, &entry.run_words(is_strict))?;
+            let found = called.out.lines().next().unwrap_or_default();
+            match digest {
+                Some(expected) if called.code == 0 && found != expected => {
+                    Outcome::Failed(format!("the digest is {found}, not {expected}"))
+                }
+                _ => Outcome::of_code(called.code, &called.err),
+            }
+        }
+        Kind::Table { table, run } => table_again(&folder.join(table), run.as_deref())?,
+    })
+}
+
+/// A scenario that cannot be read is reported by its check.
+fn has_driver(folder: &Path, scenario: &str) -> bool {
+    let beside = folder.join(scenario);
+    let path = if beside.exists() { beside } else { PathBuf::from(scenario) };
+    scenarios::read(&path).is_ok_and(|scenario| scenario.driver_timing.is_some())
+}
+
+/// Makes a table again with the command in its head, whose paths count from the table's folder.
+fn table_again(path: &Path, run: Option<&str>) -> std::result::Result<Outcome, Failure> {
+    let stored = match scenarios::text(path) {
+        Ok(stored) => stored,
+        Err(failure @ Failure::File(..)) => return Ok(Outcome::Error(1, failure.to_string())),
+        Err(failure) => return Ok(Outcome::Error(2, failure.to_string())),
+    };
+    let Some(words) = entry::words_of_table(&stored, run) else {
+        let why = "the table has no line with its command; write it with stepscope tables of this version";
+        return Ok(Outcome::Error(2, why.to_owned()));
+    };
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let called = call(folder, &words)?;
+    if called.code != 0 {
+        return Ok(Outcome::of_code(called.code, &called.err));
+    }
+    Ok(match entry::first_different_line(&called.out, &stored) {
+        None => Outcome::Passed,
+        Some(line) => Outcome::Failed(format!(
+            "line {line} differs from the table that the command makes now; write the table again"
+        )),
+    })
+}
