@@ -70,7 +70,8 @@ pub fn check(scenario: &Scenario, experiment: &Experiment, ways: Ways<'_>) {
         assert_eq!((run.faults().bits(), run.ticks_done()), (0, 0), "segments have no faults and no ticks");
     }
     // The segment engine runs in the first controller's place.
-    let positions = [run.positions()].into_iter().chain(run.devices().skip(1).map(Device::positions));
+    let first = run.positions();
+    let positions = [&first[..]].into_iter().chain(run.devices().skip(1).map(Device::positions));
     for (((left, device), config), positions) in
         fast.iter().zip(run.devices()).zip(experiment.configs()).zip(positions)
     {
@@ -154,8 +155,8 @@ fn consistent(left: &Left, config: &Config, cycles: Cycles) {
 }
 
 /// What a controller counts is what its trace and its events say.
-fn counted(left: &Left, config: &Config, positions: [i32; MAX_CHANNELS], ticks_done: u32) {
-    for (channel, position) in (0..).zip(positions) {
+fn counted(left: &Left, config: &Config, positions: &[i32], ticks_done: u32) {
+    for (channel, &position) in (0..).zip(positions) {
         let made = steps(&left.recording.trace, channel).last().map_or(0, |step| step.position);
         assert_eq!(made, position, "position of channel {channel}, from the trace and as counted");
     }
