@@ -3,6 +3,7 @@
 #![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod action;
 mod axis_data;
 mod capture;
 mod capture_maps;

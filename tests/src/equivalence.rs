@@ -9,7 +9,7 @@ use stepscope_core::{
     peripheral::{
         config::{Config, Protocol},
         device::Device,
-        signal::{Event, Levels, MAX_CHANNELS, PacketOutcome, Record, Sink},
+        signal::{Event, Levels, PacketOutcome, Record, Sink},
         trace::{Digest, steps},
         units::{Cycles, Instant},
         wire::{ForcedLevel, Line},

@@ -1,7 +1,7 @@
 //! Scenarios for runs, links and the study.
 
 use stepscope_core::sim::{self, Experiment};
-use stepscope_core::{peripheral::config::Config, scenario::Problem};
+use stepscope_core::{peripheral::config::Config, scenario::Problems};
 use wasm_bindgen::prelude::*;
 
 /// A scenario that is read, validated and planned once.
@@ -26,9 +26,8 @@ impl ValidatedScenario {
     }
 }
 
-pub(crate) fn listed(problems: &[Problem]) -> JsError {
-    let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
-    JsError::new(&lines.join("\n"))
+pub(crate) fn listed(problems: &Problems) -> JsError {
+    JsError::new(&problems.to_string())
 }
 
 /// The configuration of controller `index`.

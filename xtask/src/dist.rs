@@ -11,7 +11,7 @@
 //! depends only on the files and the commit.
 
 mod esbuild;
-mod licenses;
+pub(crate) mod licenses;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -5,6 +5,7 @@
 //! | `toolchain`, `tools`, `wasm_opt`, `npm`, `apt` | install missing tools once per user |
 //! | `page`, `dist`, `build_record` | build the page, unless it is up to date |
 //! | `docs` | build the documentation as a site |
+//! | `release` | pack the command for a release |
 //! | `sources` | format, lint and type-check the page's sources |
 //! | `words`, `spelling` | check the words and the spelling of texts |
 //! | `headers`, `serve` | the local server |
@@ -32,6 +33,7 @@ mod npm;
 mod output_buffer;
 mod package;
 mod page;
+mod release;
 mod run;
 mod serial_port;
 mod serve;
@@ -88,6 +90,15 @@ enum Task {
     },
     /// Build the documentation as a site into dist/docs
     Docs,
+    /// Build the command and pack it for a release, with SHA256SUMS
+    Release {
+        /// Target, such as aarch64-unknown-linux-musl (default: this machine's; static on Linux)
+        #[arg(long)]
+        target: Option<String>,
+        /// Folder to write to
+        #[arg(long, default_value = "target/releases")]
+        out: PathBuf,
+    },
     /// Serve the page's sources without building anything
     Serve {
         /// Port on 127.0.0.1; 0 for any free one
@@ -204,6 +215,7 @@ async fn perform(task: Task) -> Result<()> {
             println!("{}", site.join("index.html").display());
             Ok(())
         }
+        Task::Release { target, out } => release::make(release::Options { target, out }).await,
         Task::Serve { port, web: folder } => {
             serve::serve(serve::bind(port)?, &folder.unwrap_or(web), false).await
         }

@@ -40,8 +40,8 @@ impl ValidatedScenario {
     }
 
     /// The problems of fields that could not be read.
-    pub fn unreadable(&self) -> &[Problem] {
-        self.unreadable.as_deref().map_or(&[], |problems| problems)
+    pub fn unreadable(&self) -> Option<&Problems> {
+        self.unreadable.as_deref()
     }
 
     /// The experiment to run. Errors: every problem of the scenario, each with its path.

@@ -44,10 +44,9 @@ fn decoded(fragment: &str) -> Result<LinkContent, LinkError> {
 impl ValidatedScenario {
     /// The link of the scenario, without the `#`. Errors: if the scenario is invalid, or too long for a link.
     pub fn link(&self) -> Result<String, JsError> {
-        if self.0.unreadable().is_empty() {
-            Ok(pack(&self.0.scenario().to_compact_json())?)
-        } else {
-            Err(LinkError::Scenario(self.0.unreadable().to_vec()).into())
+        match self.0.unreadable() {
+            None => Ok(pack(&self.0.scenario().to_compact_json())?),
+            Some(problems) => Err(LinkError::Scenario(problems.clone()).into()),
         }
     }
 }

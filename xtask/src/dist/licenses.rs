@@ -1,4 +1,4 @@
-//! The page that lists the third-party crates in the wasm, with their licenses.
+//! The third-party crates of a program, with their licenses: as a page for the wasm, as text for a release.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -24,15 +24,32 @@ struct ThirdPartyCrate {
 
 pub(super) async fn page() -> Result<String> {
     let own = std::fs::read_to_string(root().join("LICENSE-MIT")).context("LICENSE-MIT can't be read")?;
-    Ok(html(&third_party_crates().await?, &own))
+    Ok(html(&third_party_crates(PACKAGE, WASM).await?, &own))
 }
 
-async fn third_party_crates() -> Result<Vec<ThirdPartyCrate>> {
+/// The crates of `package` for `target`, then each text with the crates that have it.
+pub(crate) async fn text(package: &str, target: &str) -> Result<String> {
+    let crates = third_party_crates(package, target).await?;
+    let mut text = String::from("Third-party code in this program\n\n");
+    for ThirdPartyCrate { name, version, license, .. } in &crates {
+        let _ = writeln!(text, "{name} {version}: {license}");
+    }
+    text.push_str("The Rust standard library: MIT OR Apache-2.0\n");
+    if target.contains("musl") {
+        text.push_str("musl libc: MIT\n");
+    }
+    for (names, shared) in shared_texts(&crates) {
+        let _ = write!(text, "\n{}\n{}\n\n{shared}\n", "-".repeat(72), names.join(", "));
+    }
+    Ok(text)
+}
+
+async fn third_party_crates(package: &str, target: &str) -> Result<Vec<ThirdPartyCrate>> {
     let mut tree = toolchain::cargo();
-    tree.args(["tree", "--locked", "--package", PACKAGE, "--target", WASM]);
+    tree.args(["tree", "--locked", "--package", package, "--target", target]);
     tree.args(["--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}"]);
     let mut metadata = toolchain::cargo();
-    metadata.args(["metadata", "--locked", "--format-version", "1", "--filter-platform", WASM]);
+    metadata.args(["metadata", "--locked", "--format-version", "1", "--filter-platform", target]);
     let (tree, metadata) = (cargo_output(tree).await?, cargo_output(metadata).await?);
     let wanted: BTreeSet<(&str, &str)> = tree.lines().filter_map(name_and_version).collect();
 
@@ -59,13 +76,13 @@ async fn third_party_crates() -> Result<Vec<ThirdPartyCrate>> {
             crates.push(ThirdPartyCrate { name, version, license, texts });
         }
     }
-    ensure!(!crates.is_empty(), "cargo tree lists no third-party crate in {PACKAGE}");
+    ensure!(!crates.is_empty(), "cargo tree lists no third-party crate in {package}");
     crates.sort();
     Ok(crates)
 }
 
 async fn cargo_output(command: Command) -> Result<String> {
-    run::output(command).await.context("cargo does not list the crates of the page")
+    run::output(command).await.context("cargo does not list the crates of the program")
 }
 
 fn name_and_version(line: &str) -> Option<(&str, &str)> {
@@ -114,6 +131,15 @@ fn html(crates: &[ThirdPartyCrate], own: &str) -> String {
         let _ = writeln!(page, "<li>{} {}: {}</li>", escaped(name), escaped(version), escaped(license));
     }
     page.push_str("<li>The Rust standard library: MIT OR Apache-2.0</li>\n</ul>\n");
+    for (names, text) in shared_texts(crates) {
+        let _ = writeln!(page, "<h3>{}</h3>\n<pre>{}</pre>", escaped(&names.join(", ")), escaped(text));
+    }
+    page.push_str("</body>\n</html>\n");
+    page
+}
+
+/// Each text once, with the names of its crates.
+fn shared_texts(crates: &[ThirdPartyCrate]) -> Vec<(Vec<&str>, &str)> {
     let mut shared: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for one in crates {
         for text in &one.texts {
@@ -122,11 +148,7 @@ fn html(crates: &[ThirdPartyCrate], own: &str) -> String {
     }
     let mut shared: Vec<(Vec<&str>, &str)> = shared.into_iter().map(|(text, names)| (names, text)).collect();
     shared.sort();
-    for (names, text) in shared {
-        let _ = writeln!(page, "<h3>{}</h3>\n<pre>{}</pre>", escaped(&names.join(", ")), escaped(text));
-    }
-    page.push_str("</body>\n</html>\n");
-    page
+    shared
 }
 
 const HEAD: &str = "<!doctype html>
@@ -188,7 +210,7 @@ mod tests {
 
     #[tokio::test]
     async fn third_party_crates_of_the_wasm_are_found_with_their_texts() {
-        let crates = third_party_crates().await.unwrap();
+        let crates = third_party_crates(PACKAGE, WASM).await.unwrap();
         let rustfft = crates.iter().find(|one| one.name == "rustfft").unwrap();
         assert!(rustfft.license.contains("MIT") && !rustfft.texts.is_empty(), "{rustfft:?}");
         assert!(crates.iter().all(|one| !one.name.starts_with("stepscope") && one.name != "serde_derive"));
