@@ -12,7 +12,7 @@ use crate::output::{Outputs, STANDARD};
 use crate::{scenarios, terminal};
 use clap::Args;
 use entry::{Entry, Kind};
-use report::{Outcome, Result, Results};
+use report::{CheckResult, Outcome, Results};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     summary: Option<PathBuf>,
 }
 
-pub(crate) fn check(arguments: &Arguments) -> std::result::Result<(), Failure> {
+pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
     let entries = entry::read(&arguments.file, &scenarios::text(&arguments.file)?)?;
     let mut outputs = Outputs::default();
     let mut create = |path: &Option<PathBuf>| path.as_ref().map(|path| outputs.create(path)).transpose();
@@ -48,7 +48,7 @@ pub(crate) fn check(arguments: &Arguments) -> std::result::Result<(), Failure> {
     for entry in &entries {
         let start = Instant::now();
         let outcome = outcome_of(entry, folder)?;
-        let result = Result { entry, outcome, seconds: start.elapsed().as_secs_f64() };
+        let result = CheckResult { entry, outcome, seconds: start.elapsed().as_secs_f64() };
         if !is_report_printed {
             writeln!(terminal::out(), "{result}").map_err(Failure::output)?;
         }
@@ -56,7 +56,7 @@ pub(crate) fn check(arguments: &Arguments) -> std::result::Result<(), Failure> {
     }
     for (path, out, write) in [
         (&arguments.junit, junit, report::write_junit as report::Writer),
-        (&arguments.summary, summary, report::write_markdown),
+        (&arguments.summary, summary, report::write_markdown as report::Writer),
     ] {
         if let (Some(path), Some(mut out)) = (path, out) {
             let written = write(&results, &mut out).and_then(|()| out.flush());
@@ -78,7 +78,7 @@ struct Called {
 }
 
 /// Calls this program itself: a check is what its user can call by hand.
-fn call(folder: &Path, words: &[String]) -> std::result::Result<Called, Failure> {
+fn call(folder: &Path, words: &[String]) -> Result<Called, Failure> {
     let failed = |error| Failure::File(PathBuf::from("stepscope"), error);
     let program = std::env::current_exe().map_err(failed)?;
     let mut command = Command::new(program);
@@ -92,7 +92,7 @@ fn call(folder: &Path, words: &[String]) -> std::result::Result<Called, Failure>
     Ok(Called { code, out: text(output.stdout), err: text(output.stderr) })
 }
 
-fn outcome_of(entry: &Entry, folder: &Path) -> std::result::Result<Outcome, Failure> {
+fn outcome_of(entry: &Entry, folder: &Path) -> Result<Outcome, Failure> {
     Ok(match &entry.kind {
         Kind::Capture { against, .. } => {
             let is_strict = entry.driver.is_some() || has_driver(folder, against);
@@ -122,7 +122,7 @@ fn has_driver(folder: &Path, scenario: &str) -> bool {
 }
 
 /// Makes a table again with the command in its head, whose paths count from the table's folder.
-fn table_again(path: &Path, run: Option<&str>) -> std::result::Result<Outcome, Failure> {
+fn table_again(path: &Path, run: Option<&str>) -> Result<Outcome, Failure> {
     let stored = match scenarios::text(path) {
         Ok(stored) => stored,
         Err(failure @ Failure::File(..)) => return Ok(Outcome::Error(1, failure.to_string())),

@@ -4,6 +4,9 @@ use clap::ValueEnum;
 use serde_json::Value;
 use std::io::{self, Write};
 
+/// Of a NumPy file: its magic, version and the header's length.
+const BYTES_BEFORE_HEADER: usize = 10;
+
 #[derive(Clone, Copy, ValueEnum)]
 pub(super) enum Format {
     /// Table with a header
@@ -128,8 +131,7 @@ impl Columns {
             fields.join(", "),
             self.rows()
         );
-        const BEFORE: usize = 10;
-        while !(BEFORE + header.len() + 1).is_multiple_of(64) {
+        while !(BYTES_BEFORE_HEADER + header.len() + 1).is_multiple_of(64) {
             header.push(' ');
         }
         header.push('\n');

@@ -15,14 +15,14 @@ pub(super) enum Outcome {
     Error(i32, String),
 }
 
-pub(super) struct Result<'e> {
+pub(super) struct CheckResult<'e> {
     pub(super) entry: &'e Entry,
     pub(super) outcome: Outcome,
     pub(super) seconds: f64,
 }
 
 #[derive(Default)]
-pub(super) struct Results<'e>(Vec<Result<'e>>);
+pub(super) struct Results<'e>(Vec<CheckResult<'e>>);
 
 impl Outcome {
     /// Of a call with this exit code and these errors.
@@ -51,7 +51,7 @@ impl Outcome {
     }
 }
 
-impl fmt::Display for Result<'_> {
+impl fmt::Display for CheckResult<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.outcome.word(), self.entry.name)?;
         let why = self.outcome.why();
@@ -60,7 +60,7 @@ impl fmt::Display for Result<'_> {
 }
 
 impl<'e> Results<'e> {
-    pub(super) fn add(&mut self, result: Result<'e>) {
+    pub(super) fn add(&mut self, result: CheckResult<'e>) {
         self.0.push(result);
     }
 
@@ -135,7 +135,7 @@ pub(super) fn write_junit(results: &Results<'_>, out: &mut Out) -> io::Result<()
         out,
         "  <testsuite name=\"stepscope\" tests=\"{tests}\" failures=\"{failures}\" errors=\"{errors}\" time=\"{time:.3}\">"
     )?;
-    for Result { entry, outcome, seconds } in &results.0 {
+    for CheckResult { entry, outcome, seconds } in &results.0 {
         let (file, name, why) = (xml(entry.file()), xml(&entry.name), xml(outcome.why()));
         write!(out, "    <testcase classname=\"{file}\" name=\"{name}\" time=\"{seconds:.3}\"")?;
         match outcome {
