@@ -189,6 +189,7 @@ fn is_blank(letter: char) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Problem;
     use crate::{Motion, Source};
     use alloc::string::ToString;
     use stepscope_motion::{
