@@ -231,7 +231,7 @@ mod tests {
         assert_eq!(found, expected);
         let found = ticks(&one, AxesPath::MOTION, 2, 12, 1, 1_000_000_000).unwrap_err();
         let cause = ValueError::TooMuch { given: 10_000_000.0, max: 2_000_000.0, of: "ticks" };
-        assert_eq!(found, [Problem::new("source.motion", cause)]);
+        assert_eq!(found[..], [Problem::new("source.motion", cause)]);
         // 625 000 ticks, too many for seven channels.
         let long = [plan(vec![Move::Dwell(Dwell { duration_s: 625.0 })])];
         assert_eq!(
@@ -240,7 +240,7 @@ mod tests {
         );
         let found = ticks(&long, AxesPath::MOTION, 7, 12, 1000, 1_000_000).unwrap_err();
         let cause = ValueError::TooMuch { given: 4_375_000.0, max: 4_000_000.0, of: "ticks of all channels" };
-        assert_eq!(found, [Problem::new("source.motion", cause)]);
+        assert_eq!(found[..], [Problem::new("source.motion", cause)]);
         assert!(ticks(&one, AxesPath::MOTION, 1, 12, 1000, 1_000_000).is_err());
         // No scenario has these values, but they must not panic.
         assert_eq!(ticks(&one, AxesPath::MOTION, 2, 255, 0, 0).map(|ticks| ticks.len()), Ok(1));
