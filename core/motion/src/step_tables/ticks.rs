@@ -228,7 +228,7 @@ mod tests {
             Problem::new("source.motion.axes[0]", cause(10, 10_000.0)),
             Problem::new("source.motion.axes[1]", cause(12, 12_000.0)),
         ];
-        assert_eq!(found, expected);
+        assert_eq!(found[..], expected);
         let found = ticks(&one, AxesPath::MOTION, 2, 12, 1, 1_000_000_000).unwrap_err();
         let cause = ValueError::TooMuch { given: 10_000_000.0, max: 2_000_000.0, of: "ticks" };
         assert_eq!(found[..], [Problem::new("source.motion", cause)]);
