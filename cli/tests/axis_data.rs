@@ -113,10 +113,10 @@ fn a_curve_is_the_plan_at_even_times() {
 #[test]
 fn a_spectrum_has_the_distortion_of_measures() {
     let measures = json(&["measures", "-", "--axis", "1"], MOTION);
-    for (of, name) in [("ideal", "ideal"), ("pulses", "pulses")] {
+    for of in ["ideal", "pulses"] {
         let spectrum = json(&["spectrum", "-", "--axis", "1", "--of", of], MOTION);
         for quantity in ["position", "speed", "acceleration"] {
-            assert_eq!(spectrum[format!("{quantity}_thd")], measures["distortion"][quantity][name], "{of}");
+            assert_eq!(spectrum[format!("{quantity}_thd")], measures["distortion"][quantity][of], "{of}");
             assert_eq!(numbers(&spectrum[quantity]).len(), 9, "the scenario's order");
         }
         assert_eq!(numbers(&spectrum["frequency_hz"])[..2], [2.0, 4.0]);

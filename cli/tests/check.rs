@@ -1,7 +1,10 @@
 //! `stepscope check` at a desk and in CI.
 
 use crate::program::stepscope;
-use std::{fs, path::PathBuf};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 /// A folder with the sample files and this list.
 fn folder(name: &str, list: &str) -> PathBuf {
@@ -16,7 +19,7 @@ fn folder(name: &str, list: &str) -> PathBuf {
     folder
 }
 
-fn check(folder: &PathBuf) -> (Option<i32>, String, String) {
+fn check(folder: &Path) -> (Option<i32>, String, String) {
     let file = |name: &str| folder.join(name).display().to_string();
     let (list, junit, summary) = (file("list.json"), file("junit.xml"), file("summary.md"));
     stepscope(&["check", &list, "--junit", &junit, "--summary", &summary], "")
