@@ -227,7 +227,7 @@ fn print<S: Sink, O: Observer>(
         }
     }
     for (channel, motor) in result.motors.iter().enumerate() {
-        print_motor(&mut out, channel, motor, clock_hz)?;
+        print_motor(&mut out, (channel, motor), clock_hz, run.overload(controller))?;
         if let Some(warning) = too_coarse(setup, channel, motor) {
             writeln!(out, "  warning: {warning}")?;
         }
@@ -235,8 +235,13 @@ fn print<S: Sink, O: Observer>(
     out.flush()
 }
 
-fn print_motor(out: &mut impl Write, channel: usize, motor: &MotorResult, clock_hz: u32) -> io::Result<()> {
-    writeln!(out, "motor {channel}          {}", verdict(motor, clock_hz))?;
+fn print_motor(
+    out: &mut impl Write,
+    (channel, motor): (usize, &MotorResult),
+    clock_hz: u32,
+    overload: Option<u64>,
+) -> io::Result<()> {
+    writeln!(out, "motor {channel}          {}", verdict(motor, clock_hz, overload))?;
     let Peak { value: following, cycle: at } = motor.following_error;
     writeln!(out, "  following error maximum {following:+.4} full steps, at {:.3} ms", ms(at, clock_hz))?;
     writeln!(

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { COLUMNS, columnWidths, isHighlighted, meaningOf } from "../../web/views/packets/columns.js";
+import { bitsText, rangeText } from "../../web/views/packets/packet_texts.js";
 
 const widest = { index: 30, time: 80, gap: 60, outcome: 90, bytes: 400, meaning: 300 };
 
@@ -50,4 +51,21 @@ test("cells say what a row is, and the tooltip why", () => {
   assert.deepEqual(cells, [["1\u202f234"], ["5"], ["0a"], ["→ frame"], ["bad", "dropped: CRC"], ["–"]]);
   assert.equal(meaningOf({ kind: "packet", fields: "ch0 +7" }), "ch0 +7");
   assert.equal(meaningOf({ kind: "reply", fields: "ACK" }), "← ACK");
+});
+
+test("bits of a field are explained, also where the pointer is", () => {
+  const bits = [
+    { high: 7, low: 7, levels: "1", name: "direction", value: "right" },
+    { high: 6, low: 0, levels: "0000101", name: "steps", value: "5" },
+  ];
+  const [address, command] = [
+    { name: "address", from: 0, until: 1, value: "1", bits: [] },
+    { name: "ch0", from: 1, until: 2, value: "+5", bits },
+  ];
+  const meaning = "bit 7 = 1: direction right, bits 6–0 = 0000101: steps 5";
+  assert.equal(bitsText(command), meaning);
+  assert.equal(bitsText(address), "");
+  const row = { hex: "01 85", layout: [address, command], byte_cycles: [0, 10], byte_length: 10 };
+  assert.equal(rangeText(row, 1, 1, 1e6), `byte 1 · 85 · ${meaning} · 10 µs to 20 µs`);
+  assert.equal(rangeText(row, 0, 0, 1e6), "byte 0 · 01 · bits 0000\u20090001 · 0 s to 10 µs");
 });

@@ -437,7 +437,7 @@ fn each_preset_shows_what_its_note_says() {
 
     let motor = |id: &str| result(id).0.motors.remove(0);
     let turn = motor("song-2021-motor");
-    assert_eq!((turn.lost, verdict(&turn, 16_000_000)), (0, "follows".to_owned()));
+    assert_eq!((turn.lost, verdict(&turn, 16_000_000, None)), (0, "follows".to_owned()));
     near(turn.following_error.value.abs(), 0.078, 0.003);
     let direct = motor("song-2021-direct-start");
     assert_eq!(direct.lost, 0);

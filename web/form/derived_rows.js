@@ -15,9 +15,10 @@ export function derivedRows(state, derived) {
   const ticks = several ? derived.controllers[0].ticks : derived.ticks;
   const axes = derived.controllers.flatMap((controller) => controller.axes);
   const peak = Math.max(0, ...axes.map((axis) => axis.peak_speed_steps_s));
-  const stepLength =
-    state.unit === "steps" ? null : axes.find((axis) => axis.peak_speed_steps_s === peak)?.[`step_${state.unit}`];
-  const peakInUnit = stepLength ? ` · ${short(peak * stepLength, 5)}\u00a0${state.unit === "deg" ? "°" : "mm"}/s` : "";
+  const fastest = axes.find((axis) => axis.peak_speed_steps_s === peak);
+  const unit = state.unit ?? fastest?.unit;
+  const stepLength = unit === "mm" ? fastest?.step_mm : unit === "deg" ? fastest?.step_deg : null;
+  const peakInUnit = stepLength ? ` · ${short(peak * stepLength, 5)}\u00a0${unit === "deg" ? "°" : "mm"}/s` : "";
   const load = derived.line_load;
   const { source, line } = state.scenario;
   const sends = "line" in source;

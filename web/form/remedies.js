@@ -1,7 +1,7 @@
 /** Problems of a run that one click can fix. One function per cause. */
 import { button, byId, element, fill } from "../dom.js";
 import { readJson } from "../state/json.js";
-import { count, pretty, si } from "../state/number.js";
+import { count, pretty, time } from "../state/number.js";
 import { set } from "../state/paths.js";
 import { isStale } from "../state/queries.js";
 import { hasNoLine } from "./source_kinds.js";
@@ -59,13 +59,12 @@ export async function showOffers(request, now, apply, released) {
 /** A button that names its effect. @param {string} change @param {() => void} apply */
 const fixButton = (change, apply) => button(`Fix it: ${change}`, `Fix it: ${change}`, apply);
 
-/** Pulses that violate the driver timing: use the minimum times of the data sheet. @param {State} state @param {DriverSheet[]} sheets @returns {Remedy | null} */
+/** Pulses that violate the driver timing: use the minimum times of the violated rules. @param {State} state @param {DriverSheet[]} sheets @returns {Remedy | null} */
 function timingViolations({ scenario, result }, sheets) {
   const { driver_timing: driver, clock_hz: clock, controllers } = scenario;
   const sheet = sheets.find(({ id }) => id === driver?.preset);
   const rules = driver?.rules ?? sheet?.rules;
   if (!rules) return null;
-  const minCycles = (/** @type {string} */ rule) => Math.ceil(((rules[`${rule}_ns`] ?? 0) * clock) / 1e9);
   const violating = (result?.summary.controllers ?? []).flatMap(({ violations }, index) => (violations ? [index] : []));
   let fixed = scenario;
   const changes = [];
@@ -73,13 +72,20 @@ function timingViolations({ scenario, result }, sheets) {
   for (const index of violating) {
     const path = index === 0 ? "bus" : `controllers[${index - 1}].bus`;
     const bus = index === 0 ? scenario.bus : controllers[index - 1].bus;
+    const violated = result?.summary.controllers[index].violated ?? [];
+    // A longer pulse shortens the low time, even if that is not violated yet.
+    const isWider = violated.includes("step_high");
+    const minCycles = (/** @type {string} */ rule) =>
+      violated.includes(rule) || (rule === "step_low" && isWider)
+        ? Math.ceil(((rules[`${rule}_ns`] ?? 0) * clock) / 1e9)
+        : 0;
     const required = requiredTimes(bus, minCycles, hasNoLine(scenario));
     for (const [key, [name, needed]] of Object.entries(required)) {
       if (needed <= bus[key]) continue;
       fixed = set(fixed, `${path}.${key}`, needed);
       changes.push(`${name} to ${count(needed)} cycles${controllers.length ? ` on controller ${index + 1}` : ""}`);
       wrongs.push(
-        `${name} is ${si(bus[key] / clock, "s")} and needs at least ${count(needed)} cycles (${si(needed / clock, "s")})`,
+        `${name} is ${time(bus[key] / clock)} and needs at least ${count(needed)} cycles (${time(needed / clock)})`,
       );
     }
   }

@@ -109,7 +109,7 @@ export function viewOf(state) {
     b: cursors.b ?? undefined,
     view: view === "motion" ? undefined : view,
     sides,
-    unit: unit === "steps" ? undefined : unit,
+    unit: unit ?? undefined,
     study: study === "compare" ? undefined : study,
   });
 }

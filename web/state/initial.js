@@ -26,6 +26,8 @@ export const FRESH_VIEW = {
   cursors: { a: null, b: null },
   markers: NO_MARKERS,
   axis: 0,
+  hiddenAxes: [],
+  unit: null,
   row: 0,
   folds: {},
 };
@@ -53,7 +55,6 @@ export function initial(scenario) {
     baseline: null,
     difference: false,
     pendingView: null,
-    unit: "steps",
     allSignals: false,
     view: "motion",
     study: "compare",

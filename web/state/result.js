@@ -60,7 +60,7 @@ function showView(state, view) {
     view: view.view ?? state.view,
     sides: view.sides ?? {},
     study: view.study ?? state.study,
-    unit: view.unit ?? "steps",
+    unit: view.unit ?? null,
   };
 }
 

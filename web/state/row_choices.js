@@ -5,8 +5,8 @@
 /** @type {RowChoices} */
 export const DEFAULT_ROWS = { px: null, order: [], hidden: [], names: {} };
 /** Default, minimum and maximum height of a row, in CSS pixels. */
-export const ROW_PX = 19;
-export const MIN_PX = 16;
+export const ROW_PX = 22;
+export const MIN_PX = 20;
 export const MAX_PX = 64;
 /** Maximum length of a name. */
 export const MAX_LETTERS = 24;

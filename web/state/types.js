@@ -5,7 +5,7 @@
  * @typedef {{path: string, message: string}} Problem
  * @typedef {{start_s: number, duration_s: number, steps: number, detail: string, warning: string}} DerivedMove
  * @typedef {{steps: number, duration_s: number, peak_speed_steps_s: number, peak_acceleration_steps_s2: number,
- *   step_mm: number | null, step_deg: number | null, moves: DerivedMove[]}} DerivedAxis
+ *   step_mm: number | null, step_deg: number | null, unit: "steps" | "mm" | "deg", moves: DerivedMove[]}} DerivedAxis
  * @typedef {{tick_s: number, limit_steps_s: number, ticks: number, axes: DerivedAxis[]}} DerivedController
  * @typedef {{ticks: number, sends: number, line_load: number | null, duration_s: number,
  *   controllers: DerivedController[]}} Derived  Controllers in the order of the scenario, the first one at 0.
@@ -16,7 +16,7 @@
  *
  * @typedef {{address: number | null, digest: string, records: number, edges: number, channels: number, positions: number[],
  *   faults: {bits: number, names: string[]}, ticks_done: number, state: string | null, changing: number[],
- *   violations: number | null}} ControllerSummary
+ *   violations: number | null, violated: string[]}} ControllerSummary  `violated`: rules of the driver timing.
  * @typedef {{controller: number, ticks: number, acknowledged: number, why: string | null,
  *   progress: "opening" | "locating" | "filling" | "confirming" | "verifying" | "done" |
  *   "counted" | "stopping" | "given_up"}} Job
@@ -24,12 +24,14 @@
  * @typedef {{recorded: boolean, framed: boolean, end_cycle: number, end_s: number, clock_hz: number, line_load: number | null,
  *   host: Host | null, controllers: ControllerSummary[]}} Summary
  * @typedef {{done: boolean, cycle: number, end_cycle: number, records: number}} Progress
- * @typedef {{x: Float64Array, has_ideal: boolean,
+ * @typedef {{x: Float64Array, has_ideal: boolean, has_acceleration: boolean,
  *   position_min: Float64Array, position_max: Float64Array, speed_min: Float64Array, speed_max: Float64Array,
  *   acceleration_min: Float64Array, acceleration_max: Float64Array,
  *   actual_position_min: Float64Array, actual_position_max: Float64Array,
  *   actual_speed_min: Float64Array, actual_speed_max: Float64Array, actual_acceleration_min?: Float64Array, actual_acceleration_max?: Float64Array,
  *   line_time_s: Float64Array, line_position: Float64Array, line_speed: Float64Array, line_acceleration: Float64Array}} MotionColumns
+ * @typedef {{time_s: Float64Array, has_acceleration?: boolean, position?: Float64Array, speed?: Float64Array, acceleration?: Float64Array,
+ *   position_min?: Float64Array, position_max?: Float64Array, speed_min?: Float64Array, speed_max?: Float64Array}} Outline  Lines of a planned axis, else minimum and maximum of its pulses.
  * @typedef {{high: Uint32Array, low: Uint32Array, last: Uint32Array}} PulseColumns
  * @typedef {{start: number, end: number, texts: string[], bad: boolean, packet: number | null, sample: number | null}} LineSpan
  * @typedef {{bits: LineSpan[], bytes: LineSpan[], fields: LineSpan[]}} Lane
@@ -40,7 +42,9 @@
  *   line_end_cycle: number, start: string, gap: string, hex: string, fields: string, outcome: string, short: string, why: string,
  *   mark: "good" | "foreign" | "repeated" | "bad", tick_start_cycle: number | null, tick_end_cycle: number | null,
  *   position: number, rank: number | null}} PacketRow  `position`: among the visible rows; `rank`: among the matches of the search.
- * @typedef {PacketRow & {layout: {name: string, from: number, until: number, value: string}[],
+ * @typedef {{high: number, low: number, levels: string, name: string, value: string}} BitGroup  Bits `high` to `low` of a field.
+ * @typedef {{name: string, from: number, until: number, value: string, bits: BitGroup[]}} PacketField
+ * @typedef {PacketRow & {layout: PacketField[],
  *   check: "none" | "missing" | "holds" | "fails", check_found: string | null, check_expected: string | null,
  *   byte_cycles: number[], byte_length: number, gap_cycles: number | null, drive_cycles: number | null,
  *   turnaround_cycles: number | null, answers: number | null}} PacketDetail  `layout`: the fields, each with its range of bytes `from..until`.
@@ -58,6 +62,7 @@
  * @typedef {{at_a: number[], at_b: number[], mean: number[], rms: number[]}} Readings  Position, speed, acceleration. Pulses have an acceleration only without a plan; NaN where it is undefined.
  * @typedef {{ideal: Readings | null, actual: Readings}} Between
  * @typedef {{common_s: number, largest: number, at_s: number, rms: number}} Deviation  From the baseline.
+ * @typedef {{name: string, unit: "seconds" | "length" | "speed" | "acceleration" | "ratio" | "full_steps", before: number | null, after: number | null, change: number | null}} ComparedFigure
  * @typedef {{title: string, revision: number, summary: Summary, controller: number, derived: DerivedController | null}} Baseline
  *
  * @typedef {{start: number, end: number}} Span  Cycles, start < end.
@@ -109,7 +114,8 @@
  * @property {ViewPart | null} pendingView  The view of a link, until there is a result.
  * @property {{text: string, comparison: SenderComparison | null} | null} sender  The digests of the sender's run (part `d` of the link), and the comparison with them.
  * @property {number} axis          Axis of the motion view.
- * @property {"steps" | "mm" | "deg"} unit  Unit of the motion view.
+ * @property {"steps" | "mm" | "deg" | null} unit  Unit of the motion view; null is the unit in which the motion was typed.
+ * @property {number[]} hiddenAxes  Axes that the motion view does not draw.
  * @property {number | null} hover  Cycle under the pointer.
  * @property {{start: number, end: number, from: string, packet: number | null, bit: number | null} | null} highlighted  A packet, a part of it, an edge or a bit of the line, in cycles, which all views highlight. `from` is the view under the pointer.
  * @property {(number | null)[]} markers  Cycles of the markers 0 to 9.

@@ -93,6 +93,8 @@ export function update(state, message) {
       return { ...state, sides: { ...state.sides, [message.area]: message.side } };
     case "axis":
       return { ...state, axis: message.axis };
+    case "axes":
+      return { ...state, hiddenAxes: message.hidden };
     case "unit":
       return { ...state, unit: message.unit };
     case "pane":

@@ -55,13 +55,13 @@ const ROWS = /** @type {const} */ ([
     name: "pulses",
     title: "Pulses",
     about: "All signals between controller, drivers and line, cycle-exact.",
-    place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 110px, 40%)", share: 0.26, min_px: 110 },
+    place: { area: "pulses", band: 1, height: "min(var(--rows-px, 158px) + 106px, 40%)", share: 0.26, min_px: 110 },
   },
   {
     name: "packets",
     title: "Packets",
     about: "Packets on the line and their outcomes.",
-    place: { area: "packets", band: 2, height: "27%", share: 6 / 11, min_px: 110 },
+    place: { area: "packets", band: 2, height: "max(27%, min(254px, 34%))", share: 6 / 11, min_px: 110 },
   },
   {
     name: "spectrum",

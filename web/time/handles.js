@@ -1,12 +1,9 @@
-/**
- * Handles of cursors A and B and flags of markers, in a strip next to the chart. Without a visible cursor its handle is at
- * the left edge.
- */
-import { element, fill } from "../dom.js";
+/** Handles of the visible cursors A and B and flags of markers, in a strip above the chart. */
+import { byId, element, fill } from "../dom.js";
 import { registerCommands } from "../shell/commands.js";
 import { exactTime } from "../state/number.js";
 import { endOf, shown } from "../state/time_window.js";
-import { cycleAt, middleOf, nudge, pixelOf } from "./timeline.js";
+import { cycleAt, nudge, pixelOf } from "./timeline.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Page} Page */
@@ -46,13 +43,15 @@ export function createHandles(strip, plot, page) {
       },
       element("span", {}, name),
     );
+    node.style.visibility = "hidden";
     const move = (/** @type {number | null} */ cycle) => dispatch({ type: "cursor", which, cycle });
     /** Start of the press, its distance from the line of the cursor, and whether it has moved. @type {{x: number, by: number, moved: boolean} | null} */
     let drag = null;
     const xOf = (/** @type {PointerEvent} */ event) => event.clientX - strip.getBoundingClientRect().left;
-    const isParked = () => node.classList.contains("parked");
-    const bringToCenter = () => {
-      if (isParked()) move(middleOf(now()));
+    const remove = () => {
+      move(null);
+      // A handle without a cursor cannot have the focus.
+      /** @type {HTMLElement} */ (strip.closest('[tabindex="0"]') ?? byId("pulses")).focus();
     };
 
     node.addEventListener("pointerdown", (event) => {
@@ -63,7 +62,7 @@ export function createHandles(strip, plot, page) {
       node.focus();
       node.setPointerCapture(event.pointerId);
       const x = xOf(event);
-      drag = { x, by: isParked() ? 0 : x - pixelOf(now(), plot(), now().cursors[which] ?? 0), moved: false };
+      drag = { x, by: x - pixelOf(now(), plot(), now().cursors[which] ?? 0), moved: false };
     });
     node.addEventListener("pointermove", (event) => {
       event.stopPropagation();
@@ -80,7 +79,7 @@ export function createHandles(strip, plot, page) {
       event.stopPropagation();
       const { moved = false } = drag ?? {};
       drag = null;
-      if (!moved) return bringToCenter();
+      if (!moved) return;
       dispatch({ type: "hover", cycle: null });
       const cycle = now().cursors[which];
       const snapped = cycle === null ? null : await page.snap?.(cycle);
@@ -98,8 +97,7 @@ export function createHandles(strip, plot, page) {
       { keys: ["Shift+ArrowRight", "PageUp"], text: "move it far to the right", run: by(FAST) },
       { keys: ["Home"], text: "move to the start of the visible time", run: () => move(Math.ceil(shown(now()).start)) },
       { keys: ["End"], text: "move to its end", run: () => move(Math.floor(shown(now()).end)) },
-      { keys: ["Enter", "Space"], text: "bring it to the center if it is not visible", run: bringToCenter },
-      { keys: ["Delete", "Backspace"], text: "remove it", run: () => move(null) },
+      { keys: ["Delete", "Backspace"], text: "remove it", run: remove },
     ]);
     return node;
   }
@@ -111,16 +109,18 @@ export function createHandles(strip, plot, page) {
     const { a, b } = state.cursors;
     for (const { which, node } of handles) {
       const cycle = state.cursors[which];
-      const parked = cycle === null || cycle < start || cycle > end;
+      const isVisible = cycle !== null && cycle >= start && cycle <= end;
       // The handle of the earlier cursor is left of its line, so that both can be dragged when they are close.
       const left = which === "a" ? b === null || (a ?? 0) <= b : a !== null && (b ?? 0) < a;
-      node.classList.toggle("parked", parked);
-      node.classList.toggle("left", !parked && left);
-      node.style.left = parked ? "" : `${pixelOf(state, plot(), cycle).toFixed(1)}px`;
+      // Not `hidden`: a handle that is dragged out of sight keeps the pointer.
+      node.style.visibility = isVisible ? "" : "hidden";
+      node.classList.toggle("left", left);
+      if (isVisible) node.style.left = `${pixelOf(state, plot(), cycle).toFixed(1)}px`;
       node.setAttribute("aria-valuemax", String(Math.round(endOf(state))));
       node.setAttribute("aria-valuenow", String(cycle ?? 0));
       node.setAttribute("aria-valuetext", cycle === null ? "not set" : `${exactTime(cycle, clock)}, cycle ${cycle}`);
     }
+    strip.classList.toggle("empty", a === null && b === null && state.markers.every((cycle) => cycle === null));
     const marks = state.markers.flatMap((cycle, digit) =>
       cycle === null || cycle < start || cycle > end
         ? []

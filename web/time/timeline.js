@@ -86,14 +86,21 @@ export function onTimeAxis(target, plot, page) {
       const { left, right } = plot();
       const x = event.clientX - target.getBoundingClientRect().left;
       if (used === true || x < left || x > right) return;
-      dispatch({ type: "cursor", which: event.shiftKey ? "b" : "a", cycle: used === false ? cycle : await used });
+      const which = event.shiftKey ? "b" : event.pointerType === "touch" ? tapped(now(), cycle) : "a";
+      dispatch({ type: "cursor", which, cycle: used === false ? cycle : await used });
     },
   });
   registerCommands(target, "Time axis (motion and pulses)", keys(page, plot));
 }
 
+/** The cursor that a tap sets: the first one that is not set, else the nearest one. @param {State} state @param {number} cycle @returns {"a" | "b"} */
+export function tapped({ cursors: { a, b } }, cycle) {
+  if (a === null) return "a";
+  return b === null || Math.abs(b - cycle) < Math.abs(a - cycle) ? "b" : "a";
+}
+
 /** The cycle in the middle of the visible time. @param {State} state */
-export function middleOf(state) {
+function middleOf(state) {
   const { start, end } = shown(state);
   return Math.round((start + end) / 2);
 }

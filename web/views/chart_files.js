@@ -4,7 +4,7 @@ import { csv } from "../shell/tables.js";
 import { time } from "../state/number.js";
 import { shown } from "../state/time_window.js";
 import { color, drawing, font, picture } from "../time/plot.js";
-import { bandsOf, chartOf, QUANTITIES } from "./motion/bands.js";
+import { bandsOf, chartOf, quantitiesOf } from "./motion/bands.js";
 import { requestColumns } from "./motion/request_columns.js";
 import { motorPanels, motorValues as motorTable } from "./motor/sheet.js";
 import { selectedSpectrum, spectrumChart } from "./spectrum/chart.js";
@@ -46,7 +46,7 @@ function titleOf({ scenario, result }) {
 /** @param {State} state @param {Engine} engine @returns {Promise<Sheet>} */
 export async function motionSheet(state, engine) {
   const columns = await requestMotion(state, engine);
-  const charts = QUANTITIES.map((quantity) => chartOf(state, columns, quantity));
+  const charts = quantitiesOf(state, columns).map((quantity) => chartOf(state, columns, quantity));
   const { start, end } = shown(state);
   const clock = state.result?.summary.clock_hz ?? 1;
   const { title, note } = titleOf(state);
@@ -199,9 +199,11 @@ function escaped(text) {
 
 /** The motion curves as CSV: one row per column of the picture, with the minimum and maximum of each curve. @param {State} state @param {import("./motion/bands.js").MotionData} columns */
 function motionTable(state, columns) {
-  const bands = QUANTITIES.flatMap((quantity) => {
-    const { unit } = chartOf(state, columns, quantity);
-    return bandsOf(state, columns, quantity)
+  // The other axes have other columns.
+  const own = { ...columns, others: [] };
+  const bands = quantitiesOf(state, own).flatMap((quantity) => {
+    const { unit } = chartOf(state, own, quantity);
+    return bandsOf(state, own, quantity)
       .reverse()
       .map((band) => ({ ...band, head: `${quantity} ${band.name}`, unit }));
   });

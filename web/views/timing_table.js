@@ -1,11 +1,14 @@
 /** Tables of the timing check: rules and violations. */
 import { byId, element, fill, setText } from "../dom.js";
 import { ruleName } from "../form/schema.js";
-import { count, time } from "../state/number.js";
+import { count, si, time } from "../state/number.js";
 import { required } from "./required.js";
 
 /** @typedef {import("../state/types.js").State} State */
 /** @typedef {import("../state/types.js").Timing} Timing */
+
+/** Digits of a measured time. */
+const DIGITS = 7;
 
 /** The columns of both tables: headings and their tooltips. @type {{[table: string]: [string, string?][]}} */
 const HEADS = {
@@ -62,7 +65,8 @@ export function paintTiming(timing, { state, drivers, showRule }) {
   );
   byId("violations").hidden = total === 0;
   const rows = (timing?.rules ?? []).map(({ rule, required_ns, least, violations }) => {
-    const slack = least === null ? null : (least.measured_cycles * 1e9 - required_ns * clock) / clock;
+    // From the printed digits, so that the columns agree.
+    const slack = least && Number((least.measured_cycles / clock).toPrecision(DIGITS)) - required_ns * 1e-9;
     const isViolated = violations > 0;
     return element(
       "tr",
@@ -71,7 +75,7 @@ export function paintTiming(timing, { state, drivers, showRule }) {
       ...[
         least ? cyclesText(least.measured_cycles) : "–",
         required_ns === 0 ? "–" : time(required_ns * 1e-9),
-        slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${time(slack * 1e-9)}`,
+        slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${si(slack, "s", DIGITS + 2)}`,
         isViolated ? count(violations) : required_ns === 0 ? "–" : "0",
       ].map((text) => element("td", { class: "number" }, text)),
     );

@@ -18,6 +18,8 @@ pub mod curves;
 mod fourier;
 pub mod measures;
 pub mod position_error;
+#[cfg(feature = "std")]
+pub mod run_figures;
 pub mod sine_optimum;
 pub mod sine_polyline;
 #[cfg(feature = "std")]

@@ -14,7 +14,8 @@ use crate::motion::torque::{Demand, Machine};
 use alloc::string::{String, ToString};
 use alloc::{format, vec::Vec};
 use serde::Serialize;
-use stepscope_motion::{AxisPlan, PlannedMove, grouped, moves::Axis};
+use stepscope_motion::moves::{Axis, Move};
+use stepscope_motion::{AxisPlan, PlannedMove, grouped};
 use stepscope_peripheral::config::Config;
 use stepscope_scenario::{Problem, Scenario};
 use stepscope_sim::{BUDGET_MOTOR_GRID_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};
@@ -62,6 +63,8 @@ pub struct DerivedAxis {
     pub peak_acceleration_steps_s2: f64,
     pub step_mm: Option<f64>,
     pub step_deg: Option<f64>,
+    /// Unit of the first distance: `steps`, `mm` or `deg`.
+    pub unit: &'static str,
     pub moves: Vec<DerivedMove>,
 }
 
@@ -185,6 +188,7 @@ impl DerivedAxis {
             peak_acceleration_steps_s2: plan.peaks().acceleration,
             step_mm: axis.mechanics.step_mm(),
             step_deg: axis.mechanics.step_deg(),
+            unit: axis.moves.iter().find_map(Move::unit).unwrap_or("steps"),
             moves: plan.moves().iter().map(planned).collect(),
         }
     }

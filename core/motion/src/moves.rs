@@ -52,6 +52,24 @@ impl Move {
     }
 }
 
+impl Move {
+    /// The unit of its distance, amplitude or positions, as in JSON; `None` for a dwell.
+    pub const fn unit(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::Trapezoid(Trapezoid { distance, .. })
+            | Self::Staircase(Staircase { distance, .. })
+            | Self::Cosine(Cosine { distance, .. })
+            | Self::Ramps(Ramps { distance, .. })
+            | Self::JerkLimited(JerkLimited { distance, .. })
+            | Self::Constant(Constant { distance, .. }) => distance.unit(),
+            Self::SineSegments(sine) => sine.amplitude.unit(),
+            Self::Sine(sine) => sine.amplitude.unit(),
+            Self::Points(points) => points.unit.of(0.0).unit(),
+            Self::Dwell(_) => return None,
+        })
+    }
+}
+
 impl Default for Move {
     fn default() -> Self {
         Self::Cosine(Cosine::default())

@@ -185,9 +185,16 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
             "{} in {told}",
             apart.largest
         );
-        for fact in ["duration", "peak speed", "peak acceleration", "edges", "RMS"] {
-            ensure!(told.contains(fact), "{fact} in {told}");
+        let rows: Vec<Vec<String>> = page
+            .eval("[...document.querySelectorAll('#compared-tables tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))")
+            .await?;
+        for fact in ["duration", "peak speed", "peak acceleration", "RMS lag", "edges"] {
+            let row =
+                rows.iter().find(|row| row[0] == fact).with_context(|| format!("{fact} in {rows:?}"))?;
+            ensure!(row.len() == 4 && row[1..].iter().all(|cell| !cell.is_empty()), "{row:?}");
         }
+        let duration = rows.iter().find(|row| row[0] == "duration").context("a duration")?;
+        assert_eq!(duration[1], "400 ms", "{duration:?}");
         page.press("#charts", "\u{e008}\u{e012}").await?;
         page.until("/ideal .*baseline /.test(document.getElementById('read-position').textContent)").await?;
 

@@ -1,4 +1,5 @@
-//! The cursors A and B: handles that a finger drags and keys move, and readings that are the exact values of their cycles.
+//! The cursors A and B: taps set them, a finger drags their handles, keys move them, and readings are the exact values of
+//! their cycles.
 
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
@@ -8,11 +9,10 @@ use stepscope_core::{inspect::motion::actual_motion::Pulses, peripheral::trace::
 use crate::{
     bench::in_browser,
     native::Known,
-    session::{RELEASE, SHIFT, Session},
+    session::{ALT, RELEASE, SHIFT, Session},
 };
 
 const RIGHT: char = '\u{e014}';
-const ENTER: char = '\u{e007}';
 const DELETE: char = '\u{e017}';
 
 /// A handle as it is on show.
@@ -66,6 +66,20 @@ async fn finger(page: &Session, css: &str, to: f64) -> Result<()> {
     touch("touchEnd", json!([])).await
 }
 
+/// A finger taps an element at a place across the window.
+async fn tap(page: &Session, css: &str, x: f64) -> Result<()> {
+    let y: f64 = page
+        .js(
+            "const { y } = document.querySelector(arguments[0]).getBoundingClientRect(); return y + 60;",
+            vec![json!(css)],
+        )
+        .await?;
+    for (kind, points) in [("touchStart", json!([{ "x": x, "y": y }])), ("touchEnd", json!([]))] {
+        page.devtools("Input.dispatchTouchEvent", json!({ "type": kind, "touchPoints": points })).await?;
+    }
+    Ok(())
+}
+
 #[test]
 fn a_finger_places_drags_and_removes_both_cursors() -> Result<()> {
     in_browser(|page| async move {
@@ -76,7 +90,6 @@ fn a_finger_places_drags_and_removes_both_cursors() -> Result<()> {
         for (tab, strip) in [("motion", "#charts-handles"), ("pulses", "#pulses-handles")] {
             page.open("").await?;
             page.click(&format!("#tab-{tab}")).await?;
-            page.until(&format!("document.querySelector('{strip} .handle').checkVisibility()")).await?;
             // It says how it stands once there is a result.
             page.until(&format!("document.querySelector('{strip} .handle').ariaValueText !== null")).await?;
             page.js::<()>(
@@ -88,9 +101,8 @@ fn a_finger_places_drags_and_removes_both_cursors() -> Result<()> {
             for (which, name, to) in [("a", "Cursor A", 150.0), ("b", "Cursor B", 250.0)] {
                 let css = format!("{strip} .handle.{which}");
                 let waiting = handle(&page, &css).await?;
-                ensure!(waiting.name == name && waiting.said == "not set", "{waiting:?}");
-                ensure!(waiting.width >= 34.0 && waiting.height >= 44.0, "{waiting:?}");
-                finger(&page, &css, to).await?;
+                ensure!(waiting.name == name && waiting.said == "not set" && !waiting.met, "{waiting:?}");
+                tap(&page, if tab == "motion" { "#charts" } else { "#pulses" }, to).await?;
                 page.until(&format!("document.querySelector('{css}').ariaValueText !== 'not set'")).await?;
                 cycles.push(cycle(&page, &css).await?.context("it is set")?);
                 let placed = handle(&page, &css).await?;
@@ -122,14 +134,18 @@ fn a_finger_places_drags_and_removes_both_cursors() -> Result<()> {
 #[test]
 fn keys_place_a_cursor_move_it_and_remove_it() -> Result<()> {
     in_browser(|page| async move {
-        for strip in ["#charts-handles", "#pulses-handles"] {
+        for (view, strip) in [("#charts", "#charts-handles"), ("#pulses", "#pulses-handles")] {
             page.open("").await?;
             let css = format!("{strip} .handle.b");
-            let waiting = handle(&page, &css).await?;
-            ensure!(waiting.width >= 24.0 && waiting.height >= 24.0, "{waiting:?}");
+            page.until(&format!("document.querySelector('{css}').ariaValueText === 'not set'")).await?;
+            ensure!(!handle(&page, &css).await?.met, "a cursor that is not set has no handle");
             let mut before = 0;
-            for keys in [format!("{ENTER}"), format!("{RIGHT}"), format!("{SHIFT}{RIGHT}{RELEASE}")] {
-                page.press(&css, &keys).await?;
+            for (on, keys) in [
+                (view, format!("{ALT}{RIGHT}{RELEASE}")),
+                (&css, format!("{RIGHT}")),
+                (&css, format!("{SHIFT}{RIGHT}{RELEASE}")),
+            ] {
+                page.press(on, &keys).await?;
                 let look = async || Ok(cycle(&page, &css).await?.filter(|cycle| *cycle > before));
                 before = page.eventually(&format!("{strip}: later than {before}"), look).await?;
             }
@@ -138,6 +154,7 @@ fn keys_place_a_cursor_move_it_and_remove_it() -> Result<()> {
             ensure!((0.19..0.24).contains(&seconds), "a little beyond the middle: {seconds}");
             page.press(&css, &DELETE.to_string()).await?;
             page.until(&format!("document.querySelector('{css}').ariaValueText === 'not set'")).await?;
+            page.until(&format!("document.activeElement === document.querySelector('{view}')")).await?;
         }
         Ok(())
     })
@@ -207,7 +224,7 @@ fn a_reading_is_the_value_in_the_cursors_very_cycle() -> Result<()> {
 const COVERED: &str = "
     const seen = (css) => [...document.querySelectorAll(css)].filter((node) => node.checkVisibility() && node.textContent.trim());
     const over = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
-    return seen('.caption > *, #cursor-readings, #hover-reading, .legend').flatMap((text) => seen('.handle > span, .flag')
+    return seen('.caption > *, #cursor-readings, #hover-reading, .legend, .axes button').flatMap((text) => seen('.handle > span, .flag')
         .filter((flag) => over(text.getBoundingClientRect(), flag.getBoundingClientRect())).map((flag) => `${flag.textContent} on ${text.textContent}`));";
 
 #[test]

@@ -30,7 +30,7 @@ use crate::{
     keyboard::{go, key},
     native::{DISTANCE, Known, with_distance},
     reflow,
-    session::{CONTROL, ENTER, SHIFT, Session, field},
+    session::{CONTROL, ENTER, RELEASE, SHIFT, Session, field},
 };
 
 /// Steps of the recorded motion.
@@ -218,7 +218,7 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
         ensure!(note.contains("Compared with the baseline: 200 steps, the baseline has 800"), "{note}");
         page.until("document.getElementById('chart-position').checkVisibility() && document.body.innerText.includes('Compared with the baseline: the experiment')").await?;
         // The position at a cursor is that of the file.
-        page.press("#charts-handles .handle.a", &ENTER.to_string()).await?;
+        page.press("#charts", &format!("{SHIFT}\u{e014}{RELEASE}")).await?;
         let look = async || cursors::cycle(&page, "#charts-handles .handle.a").await;
         let cycle = page.eventually("cursor A", look).await?;
         let position = opened.steps_of(0).into_iter().take_while(|step| step.cycle <= cycle).last();
@@ -319,7 +319,7 @@ fn the_recorded_pulses_are_judged_and_a_map_is_kept_for_the_next_file() -> Resul
         // Its acceleration is drawn: as great as its figures have it.
         let greatest = opened.report.channels[0].figures.greatest_acceleration_steps_s2.context("steps")?;
         let label = "document.getElementById('chart-acceleration').getAttribute('aria-label').replace(/\\u202f/g, '')";
-        page.until("document.getElementById('no-acceleration').hidden").await?;
+        page.until("document.getElementById('chart-acceleration').checkVisibility()").await?;
         let look = async || {
             let said: String = page.eval(label).await?;
             let numbers = said.split_once("from ").and_then(|(_, rest)| rest.split_once(" to "));

@@ -29,7 +29,7 @@ use crate::{
     recording::{
         CLOSED, MESSAGE, READY, SHOW, choose_file, cosine, digest, natively, saleae, says, type_into,
     },
-    session::{ENTER, RELEASE, SHIFT, Session},
+    session::{ALT, RELEASE, SHIFT, Session},
 };
 
 /// Whether the header says that a recording is on show.
@@ -67,7 +67,9 @@ fn a_recordings_acceleration_is_read_at_the_cursors_and_between_them_and_said_wh
         let mut cycles = Vec::new();
         for which in ["a", "b"] {
             let css = format!("#charts-handles .handle.{which}");
-            page.press(&css, &ENTER.to_string()).await?;
+            // Shift moves cursor A, Alt cursor B, from the middle.
+            let key = if which == "a" { SHIFT } else { ALT };
+            page.press("#charts", &format!("{key}{RIGHT}{RELEASE}")).await?;
             if which == "b" {
                 page.press(&css, &format!("{SHIFT}{}{RELEASE}", RIGHT.to_string().repeat(10))).await?;
             }

@@ -20,7 +20,7 @@ const SPACE: char = '\u{e00d}';
 /// See [`UP`].
 const ESCAPE: char = '\u{e00c}';
 /// Height of the rows until another is chosen.
-const ROW_PX: f64 = 19.0;
+const ROW_PX: f64 = 22.0;
 
 /// How many rows there are, for a screen reader.
 async fn until_rows(page: &Session, rows: usize) -> Result<()> {

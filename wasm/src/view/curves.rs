@@ -2,12 +2,13 @@
 
 use crate::convert::{field, numbers, object};
 use crate::{scenario::config, view::simulation::Simulation};
-use js_sys::Object;
+use js_sys::{Array, Object};
 use serde::Serialize;
 use stepscope_core::inspect::motion::actual_motion::Pulses;
 use stepscope_core::inspect::motion::cursor_stats::{self, CursorStats};
 use stepscope_core::inspect::motion::curves::{self, Window};
 use stepscope_core::inspect::motion::position_error::{self, Scaled};
+use stepscope_core::inspect::motion::run_figures::{self, AxisRun, ComparedFigure};
 use stepscope_core::{motion::AxisPlan, peripheral::signal::Levels};
 use wasm_bindgen::prelude::*;
 
@@ -48,6 +49,15 @@ impl Readings {
     }
 }
 
+#[derive(Serialize)]
+struct Comparison {
+    figures: Vec<ComparedFigure>,
+    deviation: Deviation,
+}
+
+/// Points of an ideal line in each column.
+const POINTS_PER_COLUMN: u32 = 4;
+
 #[wasm_bindgen]
 impl Simulation {
     /// Position, speed and acceleration of an axis: minimum and maximum of each column, and points of the ideal curve. The
@@ -59,6 +69,7 @@ impl Simulation {
         numbers(&result, "x", &centers);
         let plan = self.plan(axis);
         let plan_is_none = plan.is_none();
+        let has_acceleration = plan.map(curves::has_acceleration);
         field(&result, "has_ideal", &plan.is_some().into());
         if let Some(plan) = plan {
             let ideal = curves::ideal(plan, self.zero_s(), window);
@@ -81,6 +92,8 @@ impl Simulation {
         self.count_steps(axis);
         let pulses = self.pulses_of(axis);
         let curves::Actual { position, speed } = curves::actual(&pulses, window);
+        let has_acceleration = has_acceleration.unwrap_or_else(|| pulses.have_acceleration());
+        field(&result, "has_acceleration", &has_acceleration.into());
         let acceleration = plan_is_none.then(|| curves::actual_acceleration(&pulses, window));
         let bands = [
             ("actual_position", Some(position)),
@@ -159,23 +172,74 @@ impl Simulation {
         result
     }
 
-    /// Deviation of the position from another run (`Deviation`).
-    pub fn apart(
+    /// Figures of this run after those of another one, and the deviation of the positions: `{figures, deviation}`.
+    pub fn compared(
         &mut self,
         other: &mut Simulation,
         axis: u8,
         other_axis: u8,
         units: &[f64],
     ) -> Result<JsValue, JsError> {
+        let unit = |index| units.get(index).copied().unwrap_or(1.0);
+        let figures =
+            run_figures::compare(&other.axis_run(other_axis, unit(1)), &self.axis_run(axis, unit(0)));
         let common_s = self.end_s().min(other.end_s());
         let (first, second) = (self.scaled(axis, units.first()), other.scaled(other_axis, units.get(1)));
         let position_error::PositionError { largest, at_s, rms } =
             position_error::compare(first, second, common_s);
-        object(&Deviation { common_s, largest, at_s, rms })
+        let deviation = Deviation { common_s, largest, at_s, rms };
+        object(&Comparison { figures, deviation })
+    }
+
+    /// The motion of several axes at once, a coarser outline of each: `time_s` and lines of a planned axis, else `x` and the
+    /// minimum and maximum of the pulses.
+    pub fn outlines(&mut self, axes: &[u8], t0_s: f64, t1_s: f64, columns: u32) -> Array {
+        let coarse = window(t0_s, t1_s, columns.div_ceil(POINTS_PER_COLUMN));
+        axes.iter().map(|&axis| self.outline(axis, coarse, window(t0_s, t1_s, columns))).collect()
     }
 }
 
 impl Simulation {
+    fn outline(&mut self, axis: u8, coarse: Window, fine: Window) -> Object {
+        let result = Object::new();
+        if let Some(plan) = self.plan(axis) {
+            field(&result, "has_acceleration", &curves::has_acceleration(plan).into());
+            let line = curves::ideal_line(plan, self.zero_s(), coarse);
+            for (name, values) in [
+                ("time_s", line.time_s),
+                ("position", line.position),
+                ("speed", line.speed),
+                ("acceleration", line.acceleration),
+            ] {
+                numbers(&result, name, &values);
+            }
+            return result;
+        }
+        self.count_steps(axis);
+        let curves::Actual { position, speed } = curves::outline(&self.pulses_of(axis), fine);
+        let centers: Vec<f64> = (0..fine.columns).map(|column| fine.center_s(column)).collect();
+        numbers(&result, "time_s", &centers);
+        for (name, band) in [("position", position), ("speed", speed)] {
+            numbers(&result, &format!("{name}_min"), &band.min);
+            numbers(&result, &format!("{name}_max"), &band.max);
+        }
+        result
+    }
+
+    fn axis_run(&mut self, axis: u8, unit: f64) -> AxisRun<'_> {
+        self.count_steps(axis);
+        let results = self.run.results();
+        let motor = results.get(self.selected).and_then(|plant| plant.motors.get(usize::from(axis)));
+        let lost_full_steps = motor.map(|motor| motor.lost);
+        AxisRun {
+            scenario: &self.scenario,
+            plan: self.plan(axis),
+            pulses: self.pulses_of(axis),
+            lost_full_steps,
+            unit,
+        }
+    }
+
     pub(crate) fn plan(&self, axis: u8) -> Option<&AxisPlan> {
         self.experiment.plans_of(self.selected).get(usize::from(axis))
     }

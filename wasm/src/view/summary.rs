@@ -41,6 +41,8 @@ struct Controller {
     changing: Vec<u8>,
     /// Timing violations, if the scenario has a driver.
     violations: Option<u64>,
+    /// Names of the violated rules.
+    violated: Vec<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -107,6 +109,10 @@ fn host(counts: Counts, controllers: &[ControllerSummary]) -> Host {
     Host { frames, repeated, replies, rejected, refused, crashes, jobs: jobs.collect() }
 }
 
+fn violated(check: &TimingCheck) -> impl Iterator<Item = &'static str> {
+    check.results().iter().filter(|result| result.total() > 0).map(|result| result.rule.name())
+}
+
 fn controller((summary, recorded): (ControllerSummary, &ControllerRecording)) -> Controller {
     Controller {
         address: summary.address,
@@ -120,5 +126,6 @@ fn controller((summary, recorded): (ControllerSummary, &ControllerRecording)) ->
         state: summary.status.map(|status| status.state.name()),
         changing: edges::changing(&recorded.stored.trace),
         violations: recorded.timing.as_ref().map(TimingCheck::total),
+        violated: recorded.timing.iter().flat_map(violated).collect(),
     }
 }

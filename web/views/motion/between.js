@@ -1,7 +1,8 @@
 /** Values at both cursors and between them. */
 import { byId, element, fill, setText } from "../../dom.js";
 import { exactTime, short, si } from "../../state/number.js";
-import { QUANTITIES, unitFor, unitOf } from "./bands.js";
+import { unitFor, unitOf } from "./axis_units.js";
+import { QUANTITIES } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Readings} Readings */

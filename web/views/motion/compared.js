@@ -1,73 +1,66 @@
-/** The comparison with the baseline. */
+/** The comparison with the baseline: a table of figures before and after, and the difference of the positions. */
 import { byId, element, fill, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
-import { count, plain, short, si, time } from "../../state/number.js";
+import { short, si, time } from "../../state/number.js";
 import { selected } from "../../state/queries.js";
-import { baselineAxis, unitOf } from "./bands.js";
+import { baselineAxis, unitOf } from "./axis_units.js";
+import { comparedRows } from "./compared_rows.js";
 import { unitPair } from "./request_columns.js";
 
 /** @typedef {import("../../state/types.js").State} State */
+/** @typedef {{figures: import("../../state/types.js").ComparedFigure[], deviation: import("../../state/types.js").Deviation}} Comparison */
+
+/** Rows of one table; more are in a second one next to it. */
+const MAX_ROWS = 6;
 
 /** @param {import("../../engine/engine.js").Engine} engine @param {State} state */
 export async function showCompared(engine, state) {
-  const { baseline, result } = state;
+  const { baseline, result, axis } = state;
   if (!baseline || !result) return;
-  const controller = selected(state);
-  const other = baselineAxis(state);
-  const own = state.derived?.controllers[result.controller]?.axes[state.axis];
-  const { unit, scale, baseline: baselineScale } = unitOf(state);
   const isSame = baseline.revision === result.revision;
-  const deviation = isSame
+  const { index } = baselineAxis(state);
+  /** @type {Comparison | null | undefined} */
+  const found = isSame
     ? null
-    : /** @type {import("../../state/types.js").Deviation | null} */ (
-        await engine
-          .latest("apart", "baseline_apart", baseline.controller, state.axis, other.index, unitPair(state))
-          .catch(unlessDropped)
-      );
-  const rows = [
-    row("duration", own?.duration_s, other.derived?.duration_s, (value) => time(value)),
-    row(
-      "peak speed",
-      own && own.peak_speed_steps_s * scale,
-      other.derived && other.derived.peak_speed_steps_s * baselineScale,
-      (value) => plain(value, `${unit}/s`),
-    ),
-    row(
-      "peak acceleration",
-      own && own.peak_acceleration_steps_s2 * scale,
-      other.derived && other.derived.peak_acceleration_steps_s2 * baselineScale,
-      (value) => plain(value, `${unit}/s²`),
-    ),
-    row("edges", controller?.edges, baseline.summary.controllers[baseline.controller].edges, count),
-  ];
-  const deviationRow = deviation
-    ? [
-        [
-          "position",
-          `maximum difference ${short(deviation.largest)} ${deviation.largest === 1 ? unit.replace(/s$/, "") : unit} at ${time(deviation.at_s)}; RMS ${short(deviation.rms)} ${unit} over the common time of ${si(deviation.common_s, "s")}`,
-        ],
-      ]
-    : [];
+    : await engine
+        .latest("compared", "baseline_compared", baseline.controller, axis, index, unitPair(state))
+        .catch(unlessDropped);
+  if (found === undefined) return;
+  const { unit } = unitOf(state);
   setText(
     byId("compared-title"),
-    isSame
-      ? `Baseline: ${baseline.title}. Change the experiment or choose a preset. Dashed curves show the baseline.`
-      : `Compared with the baseline: ${baseline.title}`,
+    found
+      ? `Compared with the baseline: ${baseline.title}. ${positionText(found.deviation, unit)}`
+      : `Baseline: ${baseline.title}. Change the experiment or choose a preset. Dashed curves show the baseline.`,
   );
-  fill(
-    byId("compared-facts"),
-    ...(isSame ? [] : [...rows, ...deviationRow]).map(([name, text]) =>
-      element("span", {}, element("b", {}, name), ` ${text}`),
-    ),
-  );
+  const edges = [baseline.summary.controllers[baseline.controller].edges, selected(state)?.edges ?? 0];
+  const rows = found ? comparedRows(found.figures, edges, unit) : [];
+  const parts = rows.length > MAX_ROWS ? [rows.slice(0, MAX_ROWS), rows.slice(MAX_ROWS)] : rows.length ? [rows] : [];
+  fill(byId("compared-tables"), ...parts.map(table));
 }
 
-/** @param {string} name @param {number | undefined} own @param {number | undefined} baseline @param {(value: number) => string} print */
-function row(name, own, baseline, print) {
-  if (own === undefined || baseline === undefined) return [name, "–"];
-  const difference = own - baseline;
-  return [
-    name,
-    `${print(own)}, baseline ${print(baseline)}, ${difference === 0 ? "equal" : `${difference > 0 ? "+" : "−"}${print(Math.abs(difference))}`}`,
-  ];
+/** @param {import("../../state/types.js").Deviation} deviation @param {string} unit */
+function positionText({ largest, at_s, rms, common_s }, unit) {
+  const noun = largest === 1 ? unit.replace(/s$/, "") : unit;
+  return `Position: maximum difference ${short(largest)} ${noun} at ${time(at_s)}; RMS ${short(rms)} ${unit} over the common time of ${si(common_s, "s")}.`;
+}
+
+/** @param {string[][]} rows */
+function table(rows) {
+  const cells = (/** @type {string[]} */ [name, ...values]) =>
+    element(
+      "tr",
+      {},
+      element("th", { scope: "row" }, name),
+      ...values.map((value) => element("td", { class: "number" }, value)),
+    );
+  const head = ["", "before", "after", "change"].map((text, at) =>
+    element("th", { scope: "col", class: at ? "number" : "" }, text),
+  );
+  return element(
+    "table",
+    { "aria-label": "Compared with the baseline" },
+    element("thead", {}, element("tr", {}, ...head)),
+    element("tbody", {}, ...rows.map(cells)),
+  );
 }

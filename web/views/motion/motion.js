@@ -8,7 +8,9 @@ import { drawCursors, hasOverlayChanged } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { onTimeAxis } from "../../time/timeline.js";
-import { chartOf, QUANTITIES, TIME_PX, unitOf, unitsOf, whyNoAcceleration } from "./bands.js";
+import { createAxes } from "./axes.js";
+import { unitOf, unitsOf } from "./axis_units.js";
+import { chartOf, hasAcceleration, quantitiesOf, TIME_PX } from "./bands.js";
 import { createCompare } from "./compare.js";
 import { createCornerHandles } from "./corner_handles.js";
 import { createReading } from "./reading.js";
@@ -29,6 +31,7 @@ export function createMotion({ engine, dispatch, now }) {
   /** The values between the cursors, loaded when both are first set. @type {ReturnType<typeof import("./between.js").createBetween> | null} */
   let between = null;
   const compare = createCompare({ engine, dispatch, now });
+  const axes = createAxes({ dispatch, now });
   const fold = /** @type {HTMLDetailsElement} */ (byId("motion-data"));
   /** The table of the charts, loaded when it is first opened. @type {ReturnType<typeof import("./record.js").createRecord> | null} */
   let record = null;
@@ -90,22 +93,21 @@ export function createMotion({ engine, dispatch, now }) {
   /** @param {State} state */
   function paint(state) {
     if (!data || !state.result) return;
-    drawn = QUANTITIES.map((quantity) =>
-      chartOf(state, /** @type {import("./bands.js").MotionData} */ (data), quantity),
-    );
-    for (const [index, quantity] of QUANTITIES.entries()) {
+    const found = data;
+    const quantities = quantitiesOf(state, found);
+    stack.classList.toggle("two", quantities.length === 2);
+    /** @type {HTMLElement} */ (byId("chart-acceleration").parentElement).hidden = !hasAcceleration(state, found);
+    drawn = quantities.map((quantity) => chartOf(state, found, quantity));
+    for (const [index, quantity] of quantities.entries()) {
       const canvas = /** @type {HTMLCanvasElement} */ (byId(`chart-${quantity}`));
-      const { bands, caption, range, unit, chart } = drawn[index];
-      setText(byId(`caption-${quantity}`), `${caption}, ${unit}`);
+      const { bands, caption, note, range, unit, chart } = drawn[index];
+      setText(byId(`caption-${quantity}`), [`${caption}, ${unit}`, note].filter(Boolean).join(" · "));
       if (quantity === "speed") Object.assign(chart.y, corners.range());
       const area = draw(canvas, chart);
       if (quantity === "speed") corners.render(state, area, chart.y);
       const text = bands.length === 0 ? "no data" : `from ${short(range.low)} to ${short(range.high)} ${unit}`;
       canvas.setAttribute("aria-label", `${caption} over time: ${text}`);
     }
-    const note = whyNoAcceleration(data.columns);
-    byId("no-acceleration").hidden = note === "";
-    setText(byId("no-acceleration"), note);
     fit(overlay);
     paintCursor(state);
   }
@@ -166,18 +168,22 @@ export function createMotion({ engine, dispatch, now }) {
       before?.axis !== state.axis ||
       before?.unit !== state.unit
     ) {
-      const axes = selected(state)?.channels ?? 1;
-      /** @type {HTMLElement} */ (axisSelect.parentElement).hidden = axes === 1;
+      const count = selected(state)?.channels ?? 1;
+      /** @type {HTMLElement} */ (axisSelect.parentElement).hidden = count === 1;
       setOptions(
         axisSelect,
-        Array.from({ length: axes }, (_, i) => [String(i), String(i)]),
+        Array.from({ length: count }, (_, i) => [String(i), String(i)]),
         String(state.axis),
       );
       setOptions(unitSelect, unitsOf(state), unitOf(state).name);
     }
     compare.render(state, before);
+    axes.render(state, before);
     const isOtherCurve =
-      before?.axis !== state.axis || before?.result !== state.result || before?.baseline !== state.baseline;
+      before?.axis !== state.axis ||
+      before?.result !== state.result ||
+      before?.baseline !== state.baseline ||
+      before?.hiddenAxes !== state.hiddenAxes;
     const isMoved = isOtherCurve || before?.window !== state.window;
     if (before?.window !== state.window || isOtherCurve || before?.unit !== state.unit) record?.render(state);
     if (before && isKeyboardUsed && before.cursors !== state.cursors)
@@ -188,8 +194,9 @@ export function createMotion({ engine, dispatch, now }) {
       return follow();
     if (isMoved || before?.difference !== state.difference || (state.difference && before?.unit !== state.unit))
       return refresh(state);
-    if (before?.unit !== state.unit) paint(state);
-    else if (hasOverlayChanged(before, state)) paintCursor(state);
+    // Another unit may have other axes.
+    if (before?.unit !== state.unit) return refresh(state);
+    if (hasOverlayChanged(before, state)) paintCursor(state);
     return undefined;
   }
   return { render };

@@ -3,7 +3,8 @@ import { byId, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { count, exactTime, short } from "../../state/number.js";
 import { readingCycle } from "../../state/time_window.js";
-import { baselineAxis, QUANTITIES, unitFor, unitOf } from "./bands.js";
+import { baselineAxis, unitFor, unitOf } from "./axis_units.js";
+import { QUANTITIES } from "./bands.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Between} Between */

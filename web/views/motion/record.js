@@ -3,7 +3,8 @@ import { button, byId, element, fill, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, time } from "../../state/number.js";
 import { shown } from "../../state/time_window.js";
-import { bandsOf, QUANTITIES, unitFor } from "./bands.js";
+import { unitFor } from "./axis_units.js";
+import { bandsOf, QUANTITIES } from "./bands.js";
 import { requestColumns } from "./request_columns.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -33,9 +34,8 @@ export function createRecord({ engine, now }) {
     const { start, end } = shown(state);
     const length = (end - start) / PAGES;
     const span = { start: start + page * length, end: start + (page + 1) * length };
-    const data = await requestColumns(engine, { ...state, difference: false }, span, ROWS_PER_PAGE, "record").catch(
-      unlessDropped,
-    );
+    const request = requestColumns(engine, { ...state, difference: false }, span, ROWS_PER_PAGE, "record", false);
+    const data = await request.catch(unlessDropped);
     if (!data) return;
     const bands = QUANTITIES.flatMap((quantity) =>
       bandsOf(state, { ...data, difference: null }, quantity)

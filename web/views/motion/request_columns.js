@@ -1,5 +1,7 @@
 /** Requests a part of the motion in columns, and that of the baseline. */
-import { baselineAxis, unitOf } from "./bands.js";
+
+import { selected } from "../../state/queries.js";
+import { baselineAxis, otherAxes, unitOf } from "./axis_units.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
@@ -16,14 +18,16 @@ export function unitPair(state) {
  * @param {import("../../state/types.js").Span} span
  * @param {number} columns
  * @param {string} [slot]  Only the newest request of a slot gets a reply.
+ * @param {boolean} [all]  Whether the other axes are requested, too.
  * @returns {Promise<import("./bands.js").MotionData | null>}
  */
-export async function requestColumns(engine, state, { start, end }, columns, slot = "motion") {
+export async function requestColumns(engine, state, { start, end }, columns, slot = "motion", all = true) {
   const clock = state.result?.summary.clock_hz ?? 1;
   const window = [start / clock, end / clock, columns];
   const { baseline, axis } = state;
   const of = baselineAxis(state).index;
-  const [own, other, difference] = await Promise.all([
+  const axes = all ? otherAxes(state, selected(state)?.channels ?? 1) : [];
+  const [own, other, difference, outlines] = await Promise.all([
     engine.latest(slot, "motion", axis, ...window),
     baseline && engine.latest(`${slot} baseline`, "baseline_motion", baseline.controller, of, ...window),
     baseline && state.difference
@@ -38,6 +42,8 @@ export async function requestColumns(engine, state, { start, end }, columns, slo
           columns,
         )
       : null,
+    axes.length ? engine.latest(`${slot} axes`, "outlines", Uint8Array.from(axes), ...window) : [],
   ]);
-  return own && { columns: own, baseline: other, difference };
+  const others = axes.map((axis, at) => /** @type {[number, any]} */ ([axis, outlines?.[at] ?? { time_s: [] }]));
+  return own && { columns: own, others, baseline: other, difference };
 }

@@ -86,8 +86,9 @@ export function createMotor({ engine, dispatch, now }) {
       root.hidden = !shownQuantities.has(quantity.name);
       press.setAttribute("aria-pressed", String(!root.hidden));
     }
+    // --chart-px is the minimum height of a chart.
     stack.style.gridTemplateRows = `repeat(${visibleCharts.length}, minmax(var(--chart-px), 1fr))`;
-    stack.style.minHeight = `calc(${visibleCharts.length} * var(--chart-px) + ${TIME_PX}px)`;
+    stack.style.minHeight = `calc(${visibleCharts.length} * var(--chart-px) + ${2 * TIME_PX}px)`;
   }
 
   /** @param {State} state */

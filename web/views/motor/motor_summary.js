@@ -59,10 +59,10 @@ export function createSummary({ engine, now, node }) {
 }
 
 /** The text about the other motors. @param {Report} report @param {number} channel */
-function others({ motors }, channel) {
+function others({ motors, plant }, channel) {
   const lost = motors.filter(({ slips }, at) => at !== channel && slips > 0).map(({ channel: at }) => at);
   if (motors.length < 2) return "";
-  if (lost.length === 0) return "All other motors follow.";
+  if (lost.length === 0) return plant.overload_cycle === null ? "All other motors follow." : "";
   if (lost.length === 1) return `Motor ${lost[0]} also loses steps.`;
   return `Motors ${lost.slice(0, -1).join(", ")} and ${lost.at(-1)} also lose steps.`;
 }

@@ -1,11 +1,13 @@
 /** The content of the inspector: bytes, fields, CRC and times of a row. */
 import { byId, element, fill, setText } from "../../dom.js";
 import { time } from "../../state/number.js";
-import { factsOf, rangeText } from "./packet_texts.js";
+import { bitsText, bitText, factsOf, rangeText } from "./packet_texts.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").PacketDetail} PacketDetail */
 
+/** Maximum fields of a row that show the meaning of their bits. */
+const MAX_EXPLAINED = 24;
 /** Signal bits of the line (contract A3). */
 const [RX, TX] = [33, 34];
 
@@ -83,9 +85,10 @@ export function createPacketDetails({ dispatch, now }, bytes, fields) {
       ),
     );
     const hex = row.hex === "" ? [] : row.hex.split(" ");
-    const fieldNames = hex.map(
-      (_, index) => row.layout.find(({ from, until }) => from <= index && index < until)?.name ?? "",
-    );
+    const meanings = hex.map((_, index) => {
+      const field = row.layout.find(({ from, until }) => from <= index && index < until);
+      return field ? [field.name, bitsText(field)].filter(Boolean).join(", ") : "";
+    });
     fill(
       bytes,
       ...hex.map((byte, index) =>
@@ -95,8 +98,8 @@ export function createPacketDetails({ dispatch, now }, bytes, fields) {
             role: "option",
             id: `byte-${index}`,
             "aria-selected": "false",
-            "aria-label": `byte ${index}: ${byte}, ${fieldNames[index]}`,
-            title: `byte ${index}: ${fieldNames[index]}`,
+            "aria-label": `byte ${index}: ${byte}, ${meanings[index]}`,
+            title: `byte ${index}: ${meanings[index]}`,
           },
           byte,
         ),
@@ -104,7 +107,8 @@ export function createPacketDetails({ dispatch, now }, bytes, fields) {
     );
     fill(
       fields,
-      ...row.layout.map(({ name, value, from, until }, index) => {
+      ...row.layout.map((field, index) => {
+        const { name, value, from, until, bits } = field;
         const range = until - from > 1 ? `${from}–${until - 1}` : String(from);
         return element(
           "span",
@@ -112,7 +116,7 @@ export function createPacketDetails({ dispatch, now }, bytes, fields) {
             role: "option",
             id: `field-${index}`,
             "aria-selected": "false",
-            title: until - from > 1 ? `bytes ${range}` : `byte ${range}`,
+            title: [until - from > 1 ? `bytes ${range}` : `byte ${range}`, bitsText(field)].filter(Boolean).join(": "),
             class: name === "CRC" && row.check === "fails" ? "bad" : "",
           },
           element("b", {}, name),
@@ -120,6 +124,17 @@ export function createPacketDetails({ dispatch, now }, bytes, fields) {
           value,
           " ",
           element("small", {}, `[${range}]`),
+          // Long frames explain their bits only at the pointer.
+          ...(row.layout.length <= MAX_EXPLAINED
+            ? bits.map((group) =>
+                element(
+                  "span",
+                  { class: "bits", title: bitText(group) },
+                  element("code", {}, group.levels),
+                  ` ${group.value}`,
+                ),
+              )
+            : []),
         );
       }),
     );

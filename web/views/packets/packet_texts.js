@@ -13,16 +13,26 @@ export function rangeText(row, first, last, clock) {
   const bits = hex
     .map((byte) => Number.parseInt(byte, 16).toString(2).padStart(8, "0"))
     .map((eight) => `${eight.slice(0, 4)}\u2009${eight.slice(4)}`);
+  const explained = row.layout.filter(({ from, until }) => from <= first && last < until).map(bitsText);
   const when = `${time(row.byte_cycles[first] / clock)} to ${time((row.byte_cycles[last] + row.byte_length) / clock)}`;
   return [
     first === last ? `byte ${first}` : `bytes ${first} to ${last}`,
     hex.length <= MAX_BYTES ? hex.join(" ") : "",
-    hex.length <= MAX_BYTES ? `bits ${bits.join(" ")}` : "",
+    explained.find(Boolean) ?? (hex.length <= MAX_BYTES ? `bits ${bits.join(" ")}` : ""),
     when,
   ]
     .filter(Boolean)
     .join(" · ");
 }
+
+/** The number of bits and their meaning: `bits 6–0 = 0000101: 5 steps`. @param {import("../../state/types.js").BitGroup} group */
+export function bitText({ high, low, levels, name, value }) {
+  const bits = high === low ? `bit ${high}` : `bits ${high}–${low}`;
+  return `${bits} = ${levels}: ${name} ${value}`;
+}
+
+/** The meaning of all bits of a field; empty for a plain number. @param {import("../../state/types.js").PacketField} field */
+export const bitsText = ({ bits }) => bits.map(bitText).join(", ");
 
 /** @typedef {[name: string, value: string, isBad?: boolean]} Fact */
 /** The facts of a row: times, size and CRC. @param {PacketDetail} row @param {(cycles: number) => string} timeOf @returns {Fact[]} */

@@ -117,6 +117,12 @@ impl<'a> Pulses<'a> {
         }
     }
 
+    /// Whether the steps have an acceleration somewhere: not those of ticks, whose speed is stepwise.
+    pub fn have_acceleration(&self) -> bool {
+        let is_known = |index| step_acceleration::of(self.steps, index, self.hz()).is_some();
+        !matches!(self.source, Source::Ticks(..)) && (0..self.steps.len()).any(is_known)
+    }
+
     /// The acceleration in steps/s^2 at a time, as in [`Self::accelerations`].
     pub fn acceleration_at(&self, time_s: f64) -> Option<f64> {
         step_acceleration::of(self.steps, self.steps_until(time_s).checked_sub(1)?, self.hz())

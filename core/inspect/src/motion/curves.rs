@@ -10,6 +10,8 @@ const MAX_INTERVALS: usize = 256;
 /// Up to this number, a line follows all intervals of a column; for more it connects minimum and maximum.
 const MAX_FOLLOWED: usize = 32;
 const POINTS: usize = 4;
+/// Up to this number of steps per column, an outline is exact.
+const MAX_OUTLINED: usize = 16;
 
 /// Minimum and maximum per column; NaN where there is none.
 #[derive(Clone, Debug, PartialEq)]
@@ -231,6 +233,30 @@ pub fn actual(pulses: &Pulses<'_>, window: Window) -> Actual {
     });
     bands.speed.add_standstill(window, moved_to, window.end_s);
     bands
+}
+
+/// The motion of many axes' pulses at once: exact for few steps per column, else from the positions at the edges of each
+/// column, whose speed is the mean of the column.
+pub fn outline(pulses: &Pulses<'_>, window: Window) -> Actual {
+    let steps = pulses.steps_until(window.end_s) - pulses.steps_until(window.start_s);
+    if steps <= MAX_OUTLINED * window.columns {
+        return actual(pulses, window);
+    }
+    let mut bands = Actual { position: Band::new(window.columns), speed: Band::new(window.columns) };
+    let mut position = f64::from(pulses.position_at(window.start_s));
+    for column in 0..window.columns {
+        let end = f64::from(pulses.position_at(window.edge_s(column + 1)));
+        bands.position.take(column, position);
+        bands.position.take(column, end);
+        bands.speed.take(column, (end - position) / window.width_s());
+        position = end;
+    }
+    bands
+}
+
+/// Whether a plan has an acceleration: not if its speed is constant or only jumps.
+pub fn has_acceleration(plan: &AxisPlan) -> bool {
+    plan.peaks().acceleration > 0.0
 }
 
 /// The acceleration of steps without a plan; NaN where it is unknown.

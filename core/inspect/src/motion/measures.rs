@@ -154,6 +154,16 @@ impl Measures {
     }
 }
 
+/// The ideal curve of a plan compared with its pulses, as [`Measures::pulses`]. Check [`within_bounds`] first.
+pub fn ideal_to_actual(plan: &AxisPlan, pulses: &Pulses<'_>) -> CurveMetrics {
+    let (zero, hz) = (pulses.zero(), pulses.hz());
+    let shifted = |step: &Step| Step { cycle: step.cycle.saturating_sub(zero), ..*step };
+    let actual: Vec<Step> = pulses.steps.iter().map(shifted).collect();
+    let last_s = actual.last().map_or(0.0, |step| step.cycle as f64 / hz);
+    let length_s = libm::fmax(1.0 / hz, libm::fmax(plan.duration_s(), last_s));
+    curve_and_steps(plan, &Breakpoints::of(plan), &actual, hz, length_s)
+}
+
 fn requested_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
     let has_time = axis.moves.iter().any(|requested| requested.requested_s().is_some());
     let times = axis.moves.iter().zip(plan.moves());

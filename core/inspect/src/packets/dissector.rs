@@ -9,6 +9,7 @@ pub use summary::write_steps;
 use crate::packets::log::RowOutcome;
 use alloc::{borrow::Cow, format, string::String, vec::Vec};
 use core::ops::Range;
+use serde::Serialize;
 use stepscope_peripheral::protocol::{FrameOutcome, Kind, Reason, Reply};
 use stepscope_peripheral::wire::cobs::CobsDecoder;
 use stepscope_peripheral::wire::frame::{
@@ -23,6 +24,31 @@ pub struct Field {
     /// Its bytes, counted from the start of the packet.
     pub bytes: Range<usize>,
     pub value: String,
+    /// What its bits mean; empty for a plain number.
+    pub bits: Vec<BitGroup>,
+}
+
+/// Neighboring bits of a field with one meaning. Bit 0 is the least significant one of the first byte.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BitGroup {
+    pub high: u8,
+    pub low: u8,
+    /// The bits from `high` to `low` as 0 and 1.
+    pub levels: String,
+    pub name: &'static str,
+    pub value: String,
+}
+
+/// A field's value as text, and what its bits mean.
+struct Value {
+    text: String,
+    bits: Vec<BitGroup>,
+}
+
+impl<T: Into<String>> From<T> for Value {
+    fn from(text: T) -> Self {
+        Self { text: text.into(), bits: Vec::new() }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -200,23 +226,20 @@ impl Content {
     fn fields(&self, crc: CrcCheck, channels: &dyn Fn(u8) -> u8) -> Vec<Field> {
         let content = self.without_crc(crc);
         let end = content.len();
-        let mut fields = Vec::new();
-        let mut add = |name: Cow<'static, str>, range: Range<usize>, value: String| {
-            fields.push(Field { name, bytes: self.line_range(range), value });
-        };
+        let mut fields = Fields { content: self, found: Vec::new() };
         if let Some(&address) = content.first() {
-            add("address".into(), 0..1, address_to_text(address));
+            fields.add("address", 0..1, address_to_text(address));
         }
         if let [address, kind, body @ ..] = content {
-            add("kind".into(), 1..2, kind_to_text(*kind));
+            fields.add("kind", 1..2, kind_value(*kind));
             let frame = Frame { address: *address, kind: *kind, body };
             match (Reply::parse(frame), Ticks::parse(body, channels(*address))) {
-                (Some(reply), _) => reply_fields(&reply, frame.positions().as_ref(), &mut add),
+                (Some(reply), _) => reply_fields(&reply, frame.positions().as_ref(), &mut fields),
                 (None, Some(ticks)) if Kind::parse(*kind) == Some(Kind::Ticks) => {
-                    ticks_fields(&ticks, channels(*address), &mut add);
+                    ticks_fields(&ticks, channels(*address), &mut fields);
                 }
                 _ if body.is_empty() => {}
-                _ => add("body".into(), 2..end, format!("{} bytes", body.len())),
+                _ => fields.add("body", 2..end, format!("{} bytes", body.len())),
             }
         }
         if let CrcCheck::Compared { found, expected } = crc {
@@ -225,44 +248,54 @@ impl Content {
             } else {
                 format!("{found:08x}, expected {expected:08x}")
             };
-            add("CRC".into(), end..end + CRC_LEN, value);
+            fields.add("CRC", end..end + CRC_LEN, value);
         }
-        fields
+        fields.found
     }
 }
 
-type Add<'a> = dyn FnMut(Cow<'static, str>, Range<usize>, String) + 'a;
+/// Collects the fields of a frame's content.
+struct Fields<'a> {
+    content: &'a Content,
+    found: Vec<Field>,
+}
 
-fn ticks_fields(ticks: &Ticks<'_>, channels: u8, add: &mut Add<'_>) {
-    add("seq".into(), 2..3, format!("{}", ticks.seq));
-    add("count".into(), 3..4, format!("{}", ticks.count()));
+impl Fields<'_> {
+    fn add(&mut self, name: impl Into<Cow<'static, str>>, decoded: Range<usize>, value: impl Into<Value>) {
+        self.found.push(field(name, self.content.line_range(decoded), value));
+    }
+}
+
+fn ticks_fields(ticks: &Ticks<'_>, channels: u8, fields: &mut Fields<'_>) {
+    fields.add("seq", 2..3, format!("{}", ticks.seq));
+    fields.add("count", 3..4, format!("{}", ticks.count()));
     let channels = usize::from(channels.max(1));
     for (index, &byte) in ticks.commands().iter().enumerate() {
         let (tick, channel) = (index / channels, index % channels);
         let name = if channels == 1 { format!("tick {tick}") } else { format!("tick {tick} ch{channel}") };
-        add(name.into(), 4 + index..5 + index, command_to_text(byte));
+        fields.add(name, 4 + index..5 + index, command_value(byte));
     }
 }
 
-fn reply_fields(reply: &Reply, positions: Option<&Positions>, add: &mut Add<'_>) {
+fn reply_fields(reply: &Reply, positions: Option<&Positions>, fields: &mut Fields<'_>) {
     let mut at = 2;
     if let Err(reason) = reply.result {
-        add("reason".into(), 2..3, reason_to_text(reason));
+        fields.add("reason", 2..3, reason_to_text(reason));
         at = 3;
     }
     let status = reply.status;
-    add("state".into(), at..at + 1, status.state.name().into());
-    add("free".into(), at + 1..at + 2, format!("{}", status.free));
-    add("expected seq".into(), at + 2..at + 3, format!("{}", status.expected_seq));
+    fields.add("state", at..at + 1, status.state.name());
+    fields.add("free", at + 1..at + 2, format!("{}", status.free));
+    fields.add("expected seq", at + 2..at + 3, format!("{}", status.expected_seq));
     let names: Vec<&str> = Faults::from_bits(status.faults).names().collect();
     let faults = if names.is_empty() { "none".into() } else { names.join(", ") };
-    add("faults".into(), at + 3..at + 5, faults);
-    add("ticks done".into(), at + 5..at + 9, format!("{}", status.ticks_done));
+    fields.add("faults", at + 3..at + 5, Value { text: faults, bits: fault_bits(status.faults) });
+    fields.add("ticks done", at + 5..at + 9, format!("{}", status.ticks_done));
     let counters = positions.map(Positions::as_slice).unwrap_or_default();
     for (channel, &counter) in counters.iter().enumerate() {
         let from = at + STATUS_LEN + channel * POSITION_LEN;
         let name = if counters.len() == 1 { "position".into() } else { format!("position ch{channel}") };
-        add(name.into(), from..from + POSITION_LEN, position_to_text(counter));
+        fields.add(name, from..from + POSITION_LEN, position_to_text(counter));
     }
 }
 
@@ -270,13 +303,44 @@ fn raw_fields(bytes: &[u8], addressed: bool) -> Vec<Field> {
     let first = usize::from(addressed);
     let each = |(at, &byte): (usize, &u8)| match at.checked_sub(first) {
         None => field("address", 0..1, address_to_text(byte)),
-        Some(channel) => field(format!("ch{channel}"), at..at + 1, command_to_text(byte)),
+        Some(channel) => field(format!("ch{channel}"), at..at + 1, command_value(byte)),
     };
     bytes.iter().enumerate().map(each).collect()
 }
 
-fn field(name: impl Into<Cow<'static, str>>, bytes: Range<usize>, value: impl Into<String>) -> Field {
-    Field { name: name.into(), bytes, value: value.into() }
+fn field(name: impl Into<Cow<'static, str>>, bytes: Range<usize>, value: impl Into<Value>) -> Field {
+    let Value { text, bits } = value.into();
+    Field { name: name.into(), bytes, value: text, bits }
+}
+
+/// Bits `high` to `low` of `bits`.
+fn bit_group(bits: u16, high: u8, low: u8, name: &'static str, value: impl Into<String>) -> BitGroup {
+    let width = usize::from(high - low) + 1;
+    let levels = format!("{:0width$b}", (bits >> low) & ((1 << width) - 1));
+    BitGroup { high, low, levels, name, value: value.into() }
+}
+
+fn command_value(byte: u8) -> Value {
+    let ChannelCommand { right, steps } = ChannelCommand::parse(byte);
+    let direction = bit_group(byte.into(), 7, 7, "direction", if right { "right" } else { "left" });
+    let count = bit_group(byte.into(), 6, 0, "steps", format!("{steps}"));
+    Value { text: command_to_text(byte), bits: Vec::from([direction, count]) }
+}
+
+fn kind_value(kind: u8) -> Value {
+    let text = kind_to_text(kind);
+    let Some(known) = Kind::parse(kind & !ACK).filter(|_| kind != NAK) else { return text.into() };
+    let reply = if kind & ACK == 0 { "no" } else { "yes" };
+    let bits =
+        [bit_group(kind.into(), 7, 7, "reply", reply), bit_group(kind.into(), 6, 0, "kind", known.name())];
+    Value { text, bits: bits.into() }
+}
+
+/// The raised faults, each a bit.
+fn fault_bits(faults: u16) -> Vec<BitGroup> {
+    let raised = (0..16).filter(|bit| faults >> bit & 1 == 1);
+    let name = |bit: u8| Faults::from_bits(1 << bit).names().next().unwrap_or("unknown");
+    raised.map(|bit| bit_group(faults, bit, bit, "fault", name(bit))).collect()
 }
 
 fn cobs_to_text(code: u8) -> String {

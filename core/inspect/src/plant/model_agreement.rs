@@ -94,7 +94,7 @@ pub fn agreement(
         return Agreement { plant: "not run".into(), agrees: None, why: Some(why) };
     };
     let clock_hz = setup.clock_hz;
-    let plant = verdict(found, clock_hz);
+    let plant = verdict(found, clock_hz, None);
     if let Some(cycle) = overload {
         let ms = cycle as f64 / f64::from(clock_hz) * 1e3;
         let why = format!("an overload stops the controller at {ms:.2} ms, which the curve does not include");

@@ -52,12 +52,15 @@ pub fn energy_left_over(found: &MotorResult) -> Option<String> {
     })
 }
 
-/// Whether a motor follows, slips or loses steps, as text.
-pub fn verdict(motor: &MotorResult, clock_hz: u32) -> String {
+/// Whether a motor follows, slips or loses steps, as text. After an overload no motor follows: the drivers are off.
+pub fn verdict(motor: &MotorResult, clock_hz: u32, overload: Option<u64>) -> String {
     let lost = motor.lost.unsigned_abs();
     let ms = |cycle: u64| cycle as f64 / f64::from(clock_hz) * 1e3;
     let step = motor.steps_until_first_slip.unwrap_or(0);
     match motor.slips.first() {
+        None if overload.is_some() => {
+            format!("has no current from {:.2} ms on", ms(overload.unwrap_or_default()))
+        }
         Some(slip) if lost == 0 => {
             format!("slips and recovers; first at {:.2} ms in step {step}", ms(slip.cycle))
         }
@@ -178,7 +181,9 @@ mod tests {
         let experiment = Experiment::from_json(r#"{ "plant": {} }"#).expect("no problem");
         let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
         run.finish();
-        assert_eq!(verdict(&run.results()[0].motors[0], 16_000_000), "follows");
+        let motor = &run.results()[0].motors[0];
+        assert_eq!(verdict(motor, 16_000_000, None), "follows");
+        assert_eq!(verdict(motor, 16_000_000, Some(12_000)), "has no current from 0.75 ms on");
         let setup = &experiment.plants().expect("a plant").setups[0];
         assert!(settling(setup, 0, 32_768, 0.2).expect("it is made").0.rest_a > 0.0);
     }

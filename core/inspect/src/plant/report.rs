@@ -80,11 +80,15 @@ impl PlantReport {
         let setup = experiment.plants()?.setups.get(controller)?;
         let clock_hz = f64::from(setup.clock_hz);
         let result = run.results().into_iter().nth(controller)?;
+        let overload = run.overload(controller);
         let found = run.self_test(controller).iter().enumerate();
         let motors = result.motors.iter().enumerate();
         Some(Self {
-            plant: summary_of(&result, controller, clock_hz, run.overload(controller)),
-            motors: motors.clone().map(|(channel, motor)| motor_of(channel, motor, setup)).collect(),
+            plant: summary_of(&result, controller, clock_hz, overload),
+            motors: motors
+                .clone()
+                .map(|(channel, motor)| motor_of(channel, motor, setup, overload))
+                .collect(),
             slips: motors
                 .flat_map(|(channel, motor)| {
                     motor.slips.iter().map(move |slip| Slip {
@@ -124,13 +128,13 @@ fn summary_of(
     }
 }
 
-fn motor_of(channel: usize, motor: &MotorResult, setup: &Setup) -> Motor {
+fn motor_of(channel: usize, motor: &MotorResult, setup: &Setup, overload: Option<u64>) -> Motor {
     let clock_hz = f64::from(setup.clock_hz);
     let Peak { value: error, cycle: at } = motor.following_error;
     let energy = &motor.energy;
     Motor {
         channel,
-        verdict: verdict(motor, setup.clock_hz),
+        verdict: verdict(motor, setup.clock_hz, overload),
         command_full_steps: motor.command,
         rotor_full_steps: motor.state.x,
         lost_full_steps: motor.lost,

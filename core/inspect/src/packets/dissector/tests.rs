@@ -40,6 +40,38 @@ fn a_raw_packet_has_one_command_per_channel() {
     );
 }
 
+/// One line `name: high-low levels name value` per group of bits.
+fn bits_of(meaning: &Dissection) -> Vec<String> {
+    let line = |of: &str, BitGroup { high, low, levels, name, value }: &BitGroup| {
+        format!("{of}: {high}-{low} {levels} {name} {value}")
+    };
+    let fields = meaning.fields.iter();
+    fields.flat_map(|field| field.bits.iter().map(|group| line(&field.name, group))).collect()
+}
+
+#[test]
+fn the_bits_of_commands_kinds_and_faults_are_explained() {
+    let packet = RowOutcome::Packet(PacketOutcome::Queued);
+    let raw = read(Protocol::Raw, true, &[3, 0x85, 0x7f], packet);
+    let expected = [
+        "ch0: 7-7 1 direction right",
+        "ch0: 6-0 0000101 steps 5",
+        "ch1: 7-7 0 direction left",
+        "ch1: 6-0 1111111 steps 127",
+    ];
+    assert_eq!(bits_of(&raw), expected);
+    // On the line COBS replaces the zero; its bits are those of the command.
+    let wire = emit(0, 1, &Ticks::emit(7, 2, &[0, 1]));
+    let framed = bits_of(&read(Protocol::Framed, false, &wire, FRAME));
+    let expected = [
+        "kind: 7-7 0 reply no",
+        "kind: 6-0 0000001 kind TICKS",
+        "tick 0 ch0: 7-7 0 direction left",
+        "tick 0 ch0: 6-0 0000000 steps 0",
+    ];
+    assert_eq!(framed[..4], expected);
+}
+
 #[test]
 fn commands_of_a_frame_have_their_bytes_on_the_line() {
     let wire = emit(0, 1, &Ticks::emit(7, 2, &[0x81, 0, 0, 3]));
@@ -70,8 +102,15 @@ fn a_reply_has_a_status_and_a_refusal_a_reason() {
     let status =
         Status { state: State::Moving, free: 3, expected_seq: 9, faults: 0x82, ticks_done: 0x0100_0000 };
     let acknowledged = Reply { address: 4, result: Ok(Kind::Status), status };
-    let lines =
-        lines_of(&read(Protocol::Framed, false, &acknowledged.emit(None), RowOutcome::Reply(acknowledged)));
+    let meaning = read(Protocol::Framed, false, &acknowledged.emit(None), RowOutcome::Reply(acknowledged));
+    let expected = [
+        "kind: 7-7 1 reply yes",
+        "kind: 6-0 0000011 kind STATUS",
+        "faults: 1-1 1 fault SHORT_PACKET",
+        "faults: 7-7 1 fault UNDERRUN",
+    ];
+    assert_eq!(bits_of(&meaning), expected);
+    let lines = lines_of(&meaning);
     assert_eq!(lines[2], "kind 2..3 ACK STATUS");
     assert_eq!(
         lines[3..8],

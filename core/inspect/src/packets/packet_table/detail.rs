@@ -1,7 +1,7 @@
 //! One row in full: fields, CRC, and times.
 
 use super::{Mark, PacketTable, Row};
-use crate::packets::dissector::CrcCheck;
+use crate::packets::dissector::{BitGroup, CrcCheck, Field};
 use alloc::{format, string::String, vec::Vec};
 use serde::Serialize;
 use stepscope_peripheral::units::Cycles;
@@ -37,6 +37,7 @@ pub struct FieldRow {
     pub from: usize,
     pub until: usize,
     pub value: String,
+    pub bits: Vec<BitGroup>,
 }
 
 impl PacketTable<'_> {
@@ -53,11 +54,12 @@ impl PacketTable<'_> {
         let answers = self.answered(index);
         let turnaround = answers.map(|frame| row.start_cycle.saturating_sub(self.line_end(frame)));
         let Cycles(bit) = self.config.bit();
-        let field = |field: crate::packets::dissector::Field| FieldRow {
+        let field = |field: Field| FieldRow {
             name: field.name.into_owned(),
             from: field.bytes.start,
             until: field.bytes.end,
             value: field.value,
+            bits: field.bits,
         };
         Some(Detail {
             layout: dissection.fields.into_iter().map(field).collect(),

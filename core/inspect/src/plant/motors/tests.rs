@@ -18,7 +18,7 @@ fn slow_move(change: impl FnOnce(&mut Scenario)) -> String {
     let experiment = Experiment::new(&scenario).unwrap_or_else(|problems| panic!("{problems:?}"));
     let mut run = PlantRun::new(&experiment, vec![(Vec::new(), ())]).expect("a plant");
     run.finish();
-    verdict(&run.results()[0].motors[0], 16_000_000)
+    verdict(&run.results()[0].motors[0], 16_000_000, None)
 }
 
 #[test]
