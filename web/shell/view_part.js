@@ -12,7 +12,7 @@
  * | `tpackets` | tab on a narrow screen |
  * | `stiming` | which of spectrum and driver timing is open |
  * | `omotor` | which of motion, panel and motor is open |
- * | `umm` | unit of the motion view |
+ * | `umm` | unit of the motion view; by default the unit of the first distance |
  * | `ysine` | tab of the study |
  *
  * Defaults are left out. Invalid and unknown parts, such as those of a later version, are ignored; of two parts of one kind the

@@ -37,6 +37,8 @@ export function createAxes({ dispatch, now }) {
         swatch(ink, dash > 0),
         ` ${axis}`,
       );
+      // A short dash is drawn as dots.
+      if (dash === 2) /** @type {HTMLElement} */ (press.firstElementChild).style.borderTopStyle = "dotted";
       press.disabled = !hasUnit;
       return press;
     });

@@ -1,5 +1,5 @@
 /** The comparison with the baseline: a table of figures before and after, and the difference of the positions. */
-import { byId, element, fill, setText } from "../../dom.js";
+import { button, byId, element, fill, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, si, time } from "../../state/number.js";
 import { selected } from "../../state/queries.js";
@@ -13,8 +13,8 @@ import { unitPair } from "./request_columns.js";
 /** Rows of one table; more are in a second one next to it. */
 const MAX_ROWS = 6;
 
-/** @param {import("../../engine/engine.js").Engine} engine @param {State} state */
-export async function showCompared(engine, state) {
+/** @param {{engine: import("../../engine/engine.js").Engine, dispatch: import("../../state/types.js").Page["dispatch"]}} page @param {State} state */
+export async function showCompared({ engine, dispatch }, state) {
   const { baseline, result, axis } = state;
   if (!baseline || !result) return;
   const isSame = baseline.revision === result.revision;
@@ -36,7 +36,17 @@ export async function showCompared(engine, state) {
   const edges = [baseline.summary.controllers[baseline.controller].edges, selected(state)?.edges ?? 0];
   const rows = found ? comparedRows(found.figures, edges, unit) : [];
   const parts = rows.length > MAX_ROWS ? [rows.slice(0, MAX_ROWS), rows.slice(MAX_ROWS)] : rows.length ? [rows] : [];
-  fill(byId("compared-tables"), ...parts.map(table));
+  const durations = found?.figures.find(({ name }) => name === "duration");
+  const isLonger = Boolean(durations?.change) && Boolean(state.scenario.source?.motion);
+  const equal = button(
+    "Compare ramps of equal duration",
+    "Open the study: every kind of motion in the same time",
+    () => {
+      dispatch({ type: "study", study: "compare" });
+      dispatch({ type: "view", view: "study" });
+    },
+  );
+  fill(byId("compared-tables"), ...parts.map(table), ...(isLonger ? [equal] : []));
 }
 
 /** @param {import("../../state/types.js").Deviation} deviation @param {string} unit */

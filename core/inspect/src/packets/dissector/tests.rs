@@ -105,7 +105,7 @@ fn a_reply_has_a_status_and_a_refusal_a_reason() {
     let meaning = read(Protocol::Framed, false, &acknowledged.emit(None), RowOutcome::Reply(acknowledged));
     let expected = [
         "kind: 7-7 1 reply yes",
-        "kind: 6-0 0000011 kind STATUS",
+        "kind: 6-0 0000100 kind STATUS",
         "faults: 1-1 1 fault SHORT_PACKET",
         "faults: 7-7 1 fault UNDERRUN",
     ];
