@@ -10,7 +10,7 @@ export const GUTTER = 68;
 export const MARGIN = 26;
 
 /** Charts are drawn at double size, because they only have whole pixels. */
-const CHART_RATIO = 2;
+export const CHART_RATIO = 2;
 
 let loaded = /** @type {Promise<unknown> | null} */ (null);
 

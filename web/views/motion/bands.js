@@ -112,6 +112,8 @@ export function chartOf(state, data, quantity) {
   const label_px = quantity === quantitiesOf(state, data).at(-1) ? TIME_PX : 0;
   return {
     bands,
+    /** Number of curves of other axes, which are the first series. */
+    others: bands.filter(({ name }) => name.startsWith("axis")).length,
     range,
     unit: unitFor(state, quantity),
     caption:

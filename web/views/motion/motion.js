@@ -6,6 +6,7 @@ import { selected } from "../../state/queries.js";
 import { shown } from "../../state/time_window.js";
 import { drawCursors, hasOverlayChanged } from "../../time/cursors.js";
 import { createHandles } from "../../time/handles.js";
+import { drawOutlines } from "../../time/outlines.js";
 import { cleared, draw, fit, GUTTER, MARGIN, watch } from "../../time/plot.js";
 import { onTimeAxis } from "../../time/timeline.js";
 import { createAxes } from "./axes.js";
@@ -100,10 +101,11 @@ export function createMotion({ engine, dispatch, now }) {
     drawn = quantities.map((quantity) => chartOf(state, found, quantity));
     for (const [index, quantity] of quantities.entries()) {
       const canvas = /** @type {HTMLCanvasElement} */ (byId(`chart-${quantity}`));
-      const { bands, caption, note, range, unit, chart } = drawn[index];
+      const { bands, others, caption, note, range, unit, chart } = drawn[index];
       setText(byId(`caption-${quantity}`), [`${caption}, ${unit}`, note].filter(Boolean).join(" · "));
       if (quantity === "speed") Object.assign(chart.y, corners.range());
-      const area = draw(canvas, chart);
+      const area = draw(canvas, { ...chart, series: chart.series.slice(others) });
+      if (area) drawOutlines(canvas, area, { ...chart, series: chart.series.slice(0, others) });
       if (quantity === "speed") corners.render(state, area, chart.y);
       const text = bands.length === 0 ? "no data" : `from ${short(range.low)} to ${short(range.high)} ${unit}`;
       canvas.setAttribute("aria-label", `${caption} over time: ${text}`);

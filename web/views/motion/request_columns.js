@@ -6,6 +6,9 @@ import { baselineAxis, otherAxes, unitOf } from "./axis_units.js";
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../engine/engine.js").Engine} Engine */
 
+/** More axes than this have half as many columns, so that they still follow a moving window. */
+const MANY = 4;
+
 /** The length of a step in the selected unit, in this run and in the baseline. @param {State} state */
 export function unitPair(state) {
   const { scale, baseline } = unitOf(state);
@@ -27,6 +30,7 @@ export async function requestColumns(engine, state, { start, end }, columns, slo
   const { baseline, axis } = state;
   const of = baselineAxis(state).index;
   const axes = all ? otherAxes(state, selected(state)?.channels ?? 1) : [];
+  const coarse = axes.length > MANY ? Math.ceil(columns / 2) : columns;
   const [own, other, difference, outlines] = await Promise.all([
     engine.latest(slot, "motion", axis, ...window),
     baseline && engine.latest(`${slot} baseline`, "baseline_motion", baseline.controller, of, ...window),
@@ -42,7 +46,7 @@ export async function requestColumns(engine, state, { start, end }, columns, slo
           columns,
         )
       : null,
-    axes.length ? engine.latest(`${slot} axes`, "outlines", Uint8Array.from(axes), ...window) : [],
+    axes.length ? engine.latest(`${slot} axes`, "outlines", Uint8Array.from(axes), ...window.with(2, coarse)) : [],
   ]);
   const others = axes.map((axis, at) => /** @type {[number, any]} */ ([axis, outlines?.[at] ?? { time_s: [] }]));
   return own && { columns: own, others, baseline: other, difference };
