@@ -90,7 +90,7 @@ pub fn drive(experiment: &Experiment) -> u64 {
             let bits = |numbers: [f64; 4]| numbers.map(f64::to_bits);
             assert_eq!(bits([x, w, i_a, i_b]), bits([other.x, other.w, other.i_a, other.i_b]), "in slices");
             assert!([x, w, i_a, i_b].into_iter().all(f64::is_finite), "{:?}", motor.state);
-            assert!(!verdict(motor, setup.clock_hz).is_empty());
+            assert!(!verdict(motor, setup.clock_hz, None).is_empty());
             let _ = too_coarse(setup, channel, motor);
         }
         motor_grid_steps += result.cycle / u64::from(setup.grid_cycles()) * setup.motors.len() as u64;

@@ -131,7 +131,7 @@ export function createPacketDetails({ dispatch, now }, bytes, fields) {
                   "span",
                   { class: "bits", title: bitText(group) },
                   element("code", {}, group.levels),
-                  ` ${group.value}`,
+                  ` ${group.name} ${group.value}`,
                 ),
               )
             : []),
