@@ -446,12 +446,12 @@ fn each_preset_shows_what_its_note_says() {
     let stall = motor("song-2021-stall");
     assert_eq!(stall.lost, 188);
     assert!(
-        verdict(&stall, 16_000_000).starts_with("loses 188 full steps, first at 2."),
+        verdict(&stall, 16_000_000, None).starts_with("loses 188 full steps, first at 2."),
         "{}",
-        verdict(&stall, 16_000_000)
+        verdict(&stall, 16_000_000, None)
     );
     let resonance = motor("resonance-full-steps");
-    assert!(resonance.slip_count > 0, "{}", verdict(&resonance, 16_000_000));
+    assert!(resonance.slip_count > 0, "{}", verdict(&resonance, 16_000_000, None));
     for rate in ["200", "264"] {
         let json = preset("resonance-full-steps").replace("232 } }", &format!("{rate} }} }}"));
         assert_ne!(json, preset("resonance-full-steps"));
