@@ -86,7 +86,8 @@ export function createMotor({ engine, dispatch, now }) {
       root.hidden = !shownQuantities.has(quantity.name);
       press.setAttribute("aria-pressed", String(!root.hidden));
     }
-    // --chart-px is the minimum height of a chart.
+    // --chart-px is the minimum height of a chart; with more charts than fit the view scrolls.
+    stack.classList.toggle("many", visibleCharts.length > 4);
     stack.style.gridTemplateRows = `repeat(${visibleCharts.length}, minmax(var(--chart-px), 1fr))`;
     stack.style.minHeight = `calc(${visibleCharts.length} * var(--chart-px) + ${2 * TIME_PX}px)`;
   }
