@@ -33,7 +33,7 @@ const ROWS = /** @type {const} */ ([
   {
     name: "motion",
     title: "Motion",
-    about: "Position, speed and acceleration of one axis.",
+    about: "Position, speed and acceleration of all axes. Press an axis in the legend to hide it.",
     place: { area: "motion", band: 0, height: "1fr", share: 0.47, min_px: 120 },
   },
   {

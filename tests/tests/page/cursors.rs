@@ -142,8 +142,8 @@ fn keys_place_a_cursor_move_it_and_remove_it() -> Result<()> {
             let mut before = 0;
             for (on, keys) in [
                 (view, format!("{ALT}{RIGHT}{RELEASE}")),
-                (&css, format!("{RIGHT}")),
-                (&css, format!("{SHIFT}{RIGHT}{RELEASE}")),
+                (css.as_str(), format!("{RIGHT}")),
+                (css.as_str(), format!("{SHIFT}{RIGHT}{RELEASE}")),
             ] {
                 page.press(on, &keys).await?;
                 let look = async || Ok(cycle(&page, &css).await?.filter(|cycle| *cycle > before));
