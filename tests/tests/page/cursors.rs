@@ -66,12 +66,13 @@ async fn finger(page: &Session, css: &str, to: f64) -> Result<()> {
     touch("touchEnd", json!([])).await
 }
 
-/// A finger taps an element at a place across the window.
-async fn tap(page: &Session, css: &str, x: f64) -> Result<()> {
+/// A finger taps the charts, or the row EN of the pulses, at a place across the window.
+async fn tap(page: &Session, tab: &str, x: f64) -> Result<()> {
+    let (css, down) = if tab == "motion" { ("#charts", 60) } else { ("#pulses", 10) };
     let y: f64 = page
         .js(
-            "const { y } = document.querySelector(arguments[0]).getBoundingClientRect(); return y + 60;",
-            vec![json!(css)],
+            "const { y } = document.querySelector(arguments[0]).getBoundingClientRect(); return y + arguments[1];",
+            vec![json!(css), json!(down)],
         )
         .await?;
     for (kind, points) in [("touchStart", json!([{ "x": x, "y": y }])), ("touchEnd", json!([]))] {
@@ -102,7 +103,7 @@ fn a_finger_places_drags_and_removes_both_cursors() -> Result<()> {
                 let css = format!("{strip} .handle.{which}");
                 let waiting = handle(&page, &css).await?;
                 ensure!(waiting.name == name && waiting.said == "not set" && !waiting.met, "{waiting:?}");
-                tap(&page, if tab == "motion" { "#charts" } else { "#pulses" }, to).await?;
+                tap(&page, tab, to).await?;
                 page.until(&format!("document.querySelector('{css}').ariaValueText !== 'not set'")).await?;
                 cycles.push(cycle(&page, &css).await?.context("it is set")?);
                 let placed = handle(&page, &css).await?;

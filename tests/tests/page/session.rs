@@ -272,6 +272,7 @@ pub(crate) const WINDOW_S: &str = "['window-start', 'window-end'].map((id) => {
 pub(crate) const CONTROL: char = '\u{e009}';
 /// See [`CONTROL`].
 pub(crate) const SHIFT: char = '\u{e008}';
+/// See [`CONTROL`].
 pub(crate) const ALT: char = '\u{e00a}';
 /// Lifts the keys that are held.
 pub(crate) const RELEASE: char = '\u{e000}';
