@@ -124,7 +124,7 @@ fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
         go(&page, &[], "preset").await?;
         key(&page, &[], ENTER).await?;
         page.until("document.activeElement.id === 'gallery-search'").await?;
-        type_text(&page, "one turn in 0.4 s, cosine").await?;
+        type_text(&page, PRESETS[0].id).await?;
         page.until("document.querySelectorAll('#gallery [data-entry]').length === 1").await?;
         key(&page, &[], ENTER).await?;
         page.until_digest(&Known::preset(&PRESETS[0])?.digest).await.context("the first preset")?;
