@@ -51,7 +51,8 @@ pub(crate) const CUT: &str = "
 /// Controls and labels that lie on each other.
 const OVERLAPS: &str = "
     const nodes = [...document.querySelectorAll('button, input, select, textarea, summary, label, h1, h2, legend, .unit, output, .legend, #status')]
-        .filter((node) => node.checkVisibility({ visibilityProperty: true }) && !node.closest('.unseen, .skip, .caption') && !node.querySelector(':scope > .unseen'))
+        // On a narrow screen the footer stays in sight over what scrolls.
+        .filter((node) => node.checkVisibility({ visibilityProperty: true }) && !node.closest('.unseen, .skip, .caption, footer') && !node.querySelector(':scope > .unseen'))
         .map((node) => [node, node.getBoundingClientRect()]).filter(([, box]) => box.width > 0 && box.height > 0);
     const meet = (a, b) => ({
         left: Math.max(a.left, b.left), right: Math.min(a.right, b.right), top: Math.max(a.top, b.top), bottom: Math.min(a.bottom, b.bottom),
