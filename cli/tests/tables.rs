@@ -158,7 +158,9 @@ fn a_table_names_the_command_that_makes_it_again() {
     };
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tables-again");
     fs::create_dir_all(&folder).expect("a folder");
+    // In a folder, so that the path would end a comment.
     let scenario = "it's a */ turn.json";
+    fs::create_dir_all(folder.join("it's a *")).expect("a folder");
     fs::write(folder.join(scenario), MOTION).expect("a file");
     let program = env!("CARGO_BIN_EXE_stepscope");
     for options in [
