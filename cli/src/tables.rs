@@ -21,7 +21,7 @@ use stepscope_core::{
         step_tables::{EntryFormat, Form, Side, Stored, Tolerance, stored, stored_steps},
     },
     peripheral::{config::Config, segment::PulseTimes, trace::steps},
-    scenario::{Motion, Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
+    scenario::{Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
     sim::Experiment,
 };
 
@@ -233,11 +233,11 @@ impl Axes {
         } else if let Some(run_steps) = run_steps {
             (path, run_steps.into_iter().map(Steps::Listed).collect())
         } else {
-            let axes = match &scenario.source {
-                ScenarioSource::Motion(Motion { axes, .. }) => axes.as_slice(),
-                _ => &[],
+            let list = match &scenario.source {
+                ScenarioSource::Motion(motion) => Some(motion.axis_list()),
+                _ => None,
             };
-            let plans = plan_lists([("source.motion.axes".to_owned(), axes)]);
+            let plans = plan_lists(list);
             let plans = plans.map_err(of_motion).map_err(wrong)?;
             (path, plans.into_iter().flatten().map(Steps::Planned).collect())
         };

@@ -15,7 +15,7 @@ use axis_demand::MotionSource;
 use std::io::{self, Write};
 use stepscope_core::inspect::motion::torque::{Demand, Machine};
 use stepscope_core::inspect::plant::model_agreement::{Agreement, FirstSlips, agreement};
-use stepscope_core::motion::{moves::Axis, plan_lists};
+use stepscope_core::motion::plan_lists;
 use stepscope_core::peripheral::{trace::Digest, units::Cycles};
 use stepscope_core::scenario::{Motion, Problem, Scenario, Source, ValueError, of_motion};
 use stepscope_core::sim::{BUDGET_MOTOR_GRID_STEPS, Experiment, plant_run::PlantRun};
@@ -31,7 +31,7 @@ pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
     }
     arguments.named.apply_to(&mut scenario);
     let mut demands = match &scenario.source {
-        Source::Motion(Motion { axes, .. }) => planned(arguments, axes)?,
+        Source::Motion(motion) => planned(arguments, motion)?,
         _ => unplanned::demands(arguments, &scenario)?,
     };
     if arguments.format == Written::Text {
@@ -45,7 +45,8 @@ pub(crate) fn torque(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The selected axes with a motor: at least one.
-fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<AxisDemand>, Failure> {
+fn planned(arguments: &Arguments, motion: &Motion) -> Result<Vec<AxisDemand>, Failure> {
+    let axes = &motion.axes;
     let path = &arguments.scenario;
     let wrong = |problems| Failure::Scenario(path.clone(), problems);
     if arguments.named.microsteps.is_some() {
@@ -74,7 +75,7 @@ fn planned(arguments: &Arguments, axes: &[Axis]) -> Result<Vec<AxisDemand>, Fail
         let field = format!("source.motion.axes[{}].motor", only.unwrap_or(0));
         return Err(wrong(Problem::new(field, ValueError::Conflict { detail }).into()));
     }
-    let plans = plan_lists([("source.motion.axes".to_owned(), axes)]).map_err(of_motion).map_err(wrong)?;
+    let plans = plan_lists([motion.axis_list()]).map_err(of_motion).map_err(wrong)?;
     let all = axes.iter().zip(plans.into_iter().flatten()).enumerate();
     let selected = all.filter(|(axis, _)| only.is_none_or(|only| only == *axis));
     let found = selected.filter_map(|(axis, (given, plan))| {

@@ -63,12 +63,20 @@ fn wild_move() -> impl Strategy<Value = Move> {
         (distance.clone(), number(), number(), any::<bool>(), number()).prop_map(
             |(distance, duration_s, ramp_s, sliced, slice_s)| {
                 let method = if sliced { CosineMethod::Sliced } else { CosineMethod::Exact };
-                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s, ..Cosine::default() })
             }
         ),
         (distance.clone(), number(), number(), ramp_shape(), number(), number()).prop_map(
             |(distance, duration_s, ramp_s, shape, sigmoid_range, time_constants)| {
-                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
+                Move::Ramps(Ramps {
+                    distance,
+                    duration_s,
+                    ramp_s,
+                    shape,
+                    sigmoid_range,
+                    time_constants,
+                    ..Ramps::default()
+                })
             }
         ),
         (distance.clone(), speed.clone(), speed.clone(), number(), method, any::<u32>()).prop_map(
@@ -76,11 +84,12 @@ fn wild_move() -> impl Strategy<Value = Move> {
                 let acceleration = Acceleration::StepsPerSecond2(acceleration);
                 Move::Trapezoid(Trapezoid {
                     distance,
-                    start_speed,
+                    start_speed: Some(start_speed),
                     max_speed: top_speed,
                     max_acceleration: acceleration,
                     method,
                     timer_hz,
+                    ..Trapezoid::default()
                 })
             }
         ),
@@ -104,6 +113,7 @@ fn wild_move() -> impl Strategy<Value = Move> {
                     max_speed,
                     max_acceleration: Acceleration::StepsPerSecond2(acceleration),
                     max_jerk: Jerk::StepsPerSecond3(jerk),
+                    ..JerkLimited::default()
                 })
             }
         ),
@@ -139,6 +149,7 @@ fn mirrored(given: &Move) -> Move {
             Move::Points(Points { points: points.collect(), ..m })
         }
         Move::Constant(m) => Move::Constant(Constant { distance: back(&m.distance), ..m }),
+        Move::Retarget(m) => Move::Retarget(m),
         Move::Dwell(m) => Move::Dwell(m),
     }
 }

@@ -31,11 +31,12 @@ fn steps_s(speed: f64) -> Speed {
 fn trapezoid(steps: f64, start: f64, top: f64, acceleration: f64, method: TrapezoidMethod) -> Move {
     Move::Trapezoid(Trapezoid {
         distance: Distance::Steps(steps),
-        start_speed: steps_s(start),
+        start_speed: Some(steps_s(start)),
         max_speed: steps_s(top),
         max_acceleration: Acceleration::StepsPerSecond2(acceleration),
         method,
         timer_hz: 1_000_000,
+        ..Trapezoid::default()
     })
 }
 

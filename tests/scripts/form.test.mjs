@@ -37,6 +37,15 @@ test("a typed unit is chosen for its quantity", () => {
   assert.deepEqual(value("7", field, { mm: 5 }), { value: { mm: 7 } });
 });
 
+test("a quantity may be empty", () => {
+  const field = { kind: "optional-quantity", units: { steps_s: "steps/s", mm_s: "mm/s" } };
+  assert.deepEqual(value(" ", field, null), { value: null });
+  assert.deepEqual(value("250", field, { mm_s: 0 }), { value: { mm_s: 250 } });
+  assert.deepEqual(value("250 mm/s", field, null), { value: { mm_s: 250 } });
+  assert.equal(print(null, field), "");
+  assert.equal(print({ mm_s: 250 }, field), "250");
+});
+
 test("a value is printed as it can be typed again", () => {
   assert.equal(print("810a", { kind: "hex" }), "81 0a");
   assert.equal(print(["810a", "ff"], { kind: "lines" }), "81 0a\nff");

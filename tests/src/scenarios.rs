@@ -2,6 +2,7 @@
 //! right types.
 
 mod arbitrary;
+mod grouped;
 mod segments;
 mod shared;
 mod small;

@@ -103,7 +103,7 @@ export function control(path, field, { dispatch, now }) {
   const draft = (message) => dispatch({ type: "draft", path, text: input.value, message });
 
   input.addEventListener(field.kind === "choice" ? "change" : "input", () => {
-    const result = read(input.value, field, now(), value);
+    const result = read(input.value, field, now(), value ?? (unitSelect && { [unitSelect.value]: 0 }));
     if ("message" in result) draft(result.message);
     else edit(result.value);
   });
@@ -117,7 +117,7 @@ export function control(path, field, { dispatch, now }) {
   });
   unitSelect?.addEventListener("change", () => {
     typed = null;
-    dispatch({ type: "edit", path, value: convert(value, unitSelect.value, path, now()) });
+    if (value) dispatch({ type: "edit", path, value: convert(value, unitSelect.value, path, now()) });
   });
 
   /** Hides an unused field, unless it has an error. @param {State} state */

@@ -5,7 +5,7 @@
  * @property {string} key     Name in the scenario.
  * @property {string} label
  * @property {string} hint    Its meaning, format and range.
- * @property {"number" | "integer" | "optional" | "optional-number" | "cycles" | "optional-cycles" | "choice" | "quantity" | "text" | "hex" | "optional-hex" | "lines" | "wholes" | "segments" | "points"} kind
+ * @property {"number" | "integer" | "optional" | "optional-number" | "cycles" | "optional-cycles" | "choice" | "quantity" | "optional-quantity" | "text" | "hex" | "optional-hex" | "lines" | "wholes" | "segments" | "points"} kind
  *   `optional…` may be empty (null); `cycles` also accepts a time. Lists with one item per line: `lines` of hex packets,
  *   `wholes` of whole numbers, `segments`, and `points` of a curve.
  * @property {string} term    Id of its help text: its group and name in the schema.

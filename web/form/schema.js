@@ -51,7 +51,7 @@ export function field(group, name) {
   const { label, type, unit, when, ...texts } = row(group, name);
   // An optional field can also be empty.
   const words = [...(isOptional(type) ? [{ name: "", label: texts.empty ?? "none" }] : []), ...wordsOf(type)];
-  const units = quantity(type);
+  const units = quantity(withoutOptional(type));
   return {
     key: name,
     label,

@@ -13,7 +13,7 @@ import { read } from "./values.js";
 const STEP_PX = 4;
 /** Steps with Shift. */
 const FAST = 10;
-const NUMBERS = /^(number|integer|quantity|cycles|optional(-number|-cycles)?)$/;
+const NUMBERS = /^(number|integer|quantity|cycles|optional(-number|-cycles|-quantity)?)$/;
 
 /**
  * Adds keys, scrubbing and a slider to a field with a number.

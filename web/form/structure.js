@@ -79,14 +79,17 @@ export function removed(path, index, { scenario }) {
   ];
 }
 
-/** Fields that two kinds share: with the same name, kind of value and unit. @param {Field[]} one @param {Field[]} other */
+/** Fields that two kinds share: with the same name, kind of value and unit. A field that is empty at first stays so. @param {Field[]} one @param {Field[]} other */
 function sharedFields(one, other) {
-  return other.filter(({ key, kind, unit }) =>
-    one.some((field) => field.key === key && field.kind === kind && field.unit === unit),
+  const kindOf = (/** @type {Field} */ { kind }) => kind.replace("optional-q", "q");
+  return other.filter(
+    (to) =>
+      to.initial !== null &&
+      one.some((from) => from.key === to.key && kindOf(from) === kindOf(to) && from.unit === to.unit),
   );
 }
 
 /** Whether a value has one of these units. @param {any} value @param {Field["units"]} units */
 function fits(value, units) {
-  return value !== undefined && (!units || Object.keys(value)[0] in units);
+  return value != null && (!units || Object.keys(value)[0] in units);
 }

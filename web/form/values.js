@@ -31,7 +31,7 @@ export function isSame(a, b) {
 /** A value as editable text. @param {any} value @param {Field} field */
 export function print(value, field) {
   if (value === null || value === undefined) return "";
-  if (field.kind === "quantity") return String(Object.values(value)[0]);
+  if (field.kind.endsWith("quantity")) return String(Object.values(value)[0]);
   if (field.kind === "lines") return value.map(spaced).join("\n");
   const list = lists[field.kind];
   if (list) return list.print(value);
@@ -86,6 +86,9 @@ export function read(text, field, state, before) {
     case "optional-cycles":
       if (text.trim() === "") return { value: null };
       return parseNumber(text, unit, { integer: true, clockHz });
+    case "optional-quantity":
+      if (text.trim() === "") return { value: null };
+      return readQuantity(text, field, before);
     case "quantity":
       return readQuantity(text, field, before);
     case "number":

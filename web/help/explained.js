@@ -11,9 +11,17 @@ export const EXPLAINED = {
     "Sensor bandwidth",
     "An accelerometer is a low-pass filter: at this frequency it measures 71 % of the acceleration, |H| = 1/√(1 + (f/f_b)²). The distortion it measures therefore does not grow with the number of harmonics.",
   ],
+  "Axis.input_shaper": [
+    "Input shaper",
+    "The sum of the curve at several delays, which cancels the vibration of a machine at one frequency. The axis ends later by the longest delay, exactly where it would end without a shaper.",
+  ],
   "Axis.motor": [
     "Motor",
     "Motor data for the torque-speed curve: a two-phase hybrid motor on a driver that regulates the current. It does not affect the run. A move that needs more torque than the motor has gets a warning; Study > Torque shows both. The default is the motor of Song, Han, Lu 2021.",
+  ],
+  "AxisLimits.start_stop_speed": [
+    "Start-stop speed",
+    "A motor can start and stop at once up to this rate. A larger jump of the speed is refused.",
   ],
   "Bus.channels": ["Channel", "One motor driver with its STEP and DIR lines. All channels share EN."],
   "Bus.dir_hold_cycles": [
@@ -72,6 +80,10 @@ export const EXPLAINED = {
   ],
   "Cosine.distance": ["Distance", "Travel of the move, rounded to whole steps."],
   "Cosine.duration_s": ["Duration", "Time from the start to the end of the move."],
+  "Cosine.end_speed": [
+    "Start and end speed",
+    "Speed along the move at its start and its end, positive toward its end. A move without a start speed takes over the end speed given in the previous move, so that moves follow each other without a stop.",
+  ],
   "Cosine.method": [
     "Step times",
     "A small controller evaluates the curve once per slice and rounds down to whole steps, so it makes too few steps in total. Song 2021 therefore scales the curve up and shortens the plateau, so the move ends up to 0.8 % early. Exact step times have no such error.",
@@ -83,6 +95,10 @@ export const EXPLAINED = {
   "Cosine.slice_s": [
     "Slice",
     "Time T_S during which the rate is constant, 1 ms in Song 2021. The rate at the start of a slice determines its number of steps.",
+  ],
+  "Cosine.start_speed": [
+    "Start and end speed",
+    "Speed along the move at its start and its end, positive toward its end. A move without a start speed takes over the end speed given in the previous move, so that moves follow each other without a stop.",
   ],
   "Direct.step_mm": ["One step", "Travel of one step, measured or given."],
   "Dwell.duration_s": ["Duration", "Time from the start to the end of the move."],
@@ -109,12 +125,24 @@ export const EXPLAINED = {
     "More ticks per frame leave more time for the reply, but need a deeper queue.",
   ],
   "JerkLimited.distance": ["Distance", "Travel of the move, rounded to whole steps."],
+  "JerkLimited.end_speed": [
+    "Start and end speed",
+    "Speed along the move at its start and its end, positive toward its end. A move without a start speed takes over the end speed given in the previous move, so that moves follow each other without a stop.",
+  ],
   "JerkLimited.max_acceleration": ["Max acceleration", "Limit of the acceleration. Short moves do not reach it."],
+  "JerkLimited.max_deceleration": [
+    "Deceleration",
+    "Limit while the speed falls. A motor brakes harder than it accelerates, because friction helps.",
+  ],
   "JerkLimited.max_jerk": [
     "Max jerk",
     "Limit of the change of acceleration per second. An infinite jerk makes a trapezoid.",
   ],
   "JerkLimited.max_speed": ["Max speed", "Rate of the plateau. Short moves do not reach it."],
+  "JerkLimited.start_speed": [
+    "Start and end speed",
+    "Speed along the move at its start and its end, positive toward its end. A move without a start speed takes over the end speed given in the previous move, so that moves follow each other without a stop.",
+  ],
   "Line.address": [
     "Address",
     "Number of a controller on a shared line. A controller accepts packets that begin with its own address or with 255.",
@@ -131,6 +159,10 @@ export const EXPLAINED = {
   "Motion.engine": [
     "Step generation",
     "Ticks: the host sends the number of steps of each tick (RU 2704486). Step table: a timer interrupt of the controller runs the move without a host, from a table of intervals (Sonobe 2011, Zhang 2012, Song 2021).",
+  ],
+  "Motion.groups": [
+    "Group",
+    "Moves of several axes that start in the same instant and end in the same instant. A group starts when the last axis is at rest.",
   ],
   "Motor.holding_torque_mN_m": [
     "Holding torque",
@@ -207,6 +239,10 @@ export const EXPLAINED = {
   "Points.unit": ["Unit", "Unit of the positions. Millimeters and degrees need mechanics that have them."],
   "Ramps.distance": ["Distance", "Travel of the move, rounded to whole steps."],
   "Ramps.duration_s": ["Duration", "Time from the start to the end of the move."],
+  "Ramps.end_speed": [
+    "Start and end speed",
+    "Speed along the move at its start and its end, positive toward its end. A move without a start speed takes over the end speed given in the previous move, so that moves follow each other without a stop.",
+  ],
   "Ramps.ramp_s": [
     "Ramp",
     "Time t_s of each ramp. Peak rate = steps / (duration − ramp): a longer ramp is gentler but has a higher peak.",
@@ -219,9 +255,18 @@ export const EXPLAINED = {
     "Sigmoid range",
     "1/(1 + e⁻ˣ) only approaches 0 and 1, so the ramp uses x from minus this value to plus this value, stretched to full speed. With a small range the ramp is nearly straight; with a large one the acceleration peaks in the middle.",
   ],
+  "Ramps.start_speed": [
+    "Start and end speed",
+    "Speed along the move at its start and its end, positive toward its end. A move without a start speed takes over the end speed given in the previous move, so that moves follow each other without a stop.",
+  ],
   "Ramps.time_constants": [
     "Time constants",
     "Time constants of the exponential per ramp. A higher number makes the ramp steeper at the start and flatter at the end; a low number makes it nearly straight.",
+  ],
+  "Retarget.at_s": ["Cut at", "Time after the start of the previous move at which the new target takes over."],
+  "Retarget.profile": [
+    "Profile",
+    "Jerk-limited: the acceleration changes gradually. Trapezoid: the acceleration jumps, so the move is shorter.",
   ],
   "Rotary.full_step_deg": ["Full step", "Angle of one full step of the motor; usually 1.8°."],
   "Rotary.microsteps": [
@@ -303,7 +348,15 @@ export const EXPLAINED = {
   "TimingRules.enable_wake_ns": ["EN wake-up", "From the rise of EN, or from reset, to the first step."],
   "TimingRules.step_high_ns": ["STEP high", "From the rise of STEP to its fall."],
   "TimingRules.step_low_ns": ["STEP low", "From the fall of STEP to its next rise."],
+  "Trapezoid.deceleration": [
+    "Deceleration",
+    "Limit while the speed falls. A motor brakes harder than it accelerates, because friction helps.",
+  ],
   "Trapezoid.distance": ["Distance", "Travel of the move, rounded to whole steps."],
+  "Trapezoid.end_speed": [
+    "Start and end speed",
+    "Speed along the move at its start and its end, positive toward its end. A move without a start speed takes over the end speed given in the previous move, so that moves follow each other without a stop.",
+  ],
   "Trapezoid.max_acceleration": [
     "Max acceleration",
     "Change of speed per second on the ramps. A motor reaches at most its torque minus the load torque, divided by the inertia.",

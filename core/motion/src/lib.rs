@@ -2,7 +2,8 @@
 //! Part B).
 //!
 //! ```text
-//! moves, mechanics, motor, limits    the input from a scenario
+//! moves, groups, mechanics, motor    the input from a scenario, and its limits
+//! shaper                             impulses that cancel a vibration
 //! curves                             position over time, one file per kind of move
 //! timing                             when each step is due, with clock-cycle accuracy
 //! planners                           from moves to curves, axis by axis
@@ -33,6 +34,7 @@ pub mod bisection;
 pub mod curves;
 pub mod excitation;
 mod format;
+pub mod groups;
 pub mod limits;
 pub mod mechanics;
 pub mod motor;
@@ -40,6 +42,7 @@ pub mod moves;
 mod planners;
 pub mod problem;
 mod problems;
+pub mod shaper;
 pub mod step_tables;
 mod timing;
 mod validator;
@@ -48,7 +51,7 @@ pub use curves::breakpoints::{Breakpoints, Interval};
 pub use curves::curve::{Curve, Peaks};
 pub use format::grouped;
 pub use planners::axis::{AxisPlan, PlannedMove};
-pub use planners::plan::{plan_axis, plan_lists, plan_move};
+pub use planners::plan::{AxisList, plan_axis, plan_lists, plan_move};
 pub use planners::{due_by::DueBy, profile::Profile};
 pub use problem::{Cause, Problem, ValueError};
 pub use problems::{MAX_PROBLEMS, Problems};

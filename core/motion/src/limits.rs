@@ -38,6 +38,18 @@ pub const PERIODS: RangeInclusive<f64> = 1.0..=1e6;
 pub const MAX_DEVIATION: RangeInclusive<f64> = 0.0..=1.0;
 pub const POINTS: RangeInclusive<usize> = 2..=MAX_POINTS;
 pub const MOVES: RangeInclusive<usize> = 1..=64;
+/// Groups of a motion.
+pub const GROUPS: RangeInclusive<usize> = 0..=64;
+/// Points of a group.
+pub const WAY_POINTS: RangeInclusive<usize> = 1..=4096;
+/// A speed at the start or the end of a move, or a start-stop speed.
+pub const EDGE_SPEED_STEPS_S: RangeInclusive<f64> = 0.0..=MAX_SPEED;
+/// A speed with a direction.
+pub const SIGNED_SPEED_STEPS_S: RangeInclusive<f64> = -MAX_SPEED..=MAX_SPEED;
+/// Time of a cut after the start of the move.
+pub const CUT_S: RangeInclusive<f64> = 1e-9..=*DURATION_S.end();
+/// Frequency of a vibration.
+pub const SHAPER_HZ: RangeInclusive<f64> = 0.1..=10_000.0;
 
 pub const RATED_CURRENT_A: RangeInclusive<f64> = 0.001..=100.0;
 /// Peak of the phase current in units of the rated current.

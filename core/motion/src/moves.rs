@@ -16,6 +16,7 @@
 
 use crate::mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed};
 use crate::motor::Motor;
+use crate::shaper::InputShaper;
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::parameters;
 
@@ -31,6 +32,7 @@ pub enum Move {
     JerkLimited(JerkLimited),
     Points(Points),
     Constant(Constant),
+    Retarget(Retarget),
     Dwell(Dwell),
 }
 
@@ -47,13 +49,17 @@ impl Move {
                 Some(last.time_s - first.time_s)
             }
             Self::Dwell(dwell) => Some(dwell.duration_s),
-            Self::Trapezoid(_) | Self::Staircase(_) | Self::JerkLimited(_) | Self::Constant(_) => None,
+            Self::Trapezoid(_)
+            | Self::Staircase(_)
+            | Self::JerkLimited(_)
+            | Self::Constant(_)
+            | Self::Retarget(_) => None,
         }
     }
 }
 
 impl Move {
-    /// The unit of its distance, amplitude or positions, as in JSON; `None` for a dwell.
+    /// The unit of its distance, amplitude or positions, as in JSON; `None` for a dwell or a new target.
     pub const fn unit(&self) -> Option<&'static str> {
         Some(match self {
             Self::Trapezoid(Trapezoid { distance, .. })
@@ -65,7 +71,7 @@ impl Move {
             Self::SineSegments(sine) => sine.amplitude.unit(),
             Self::Sine(sine) => sine.amplitude.unit(),
             Self::Points(points) => points.unit.of(0.0).unit(),
-            Self::Dwell(_) => return None,
+            Self::Dwell(_) | Self::Retarget(_) => return None,
         })
     }
 }
@@ -81,9 +87,14 @@ parameters! { (Clone, Debug, PartialEq)
     pub struct Trapezoid {
         /// Negative to the left, like every distance.
         pub distance: Distance = Distance::Steps(2000.0),
-        pub start_speed: Speed = Speed::StepsPerSecond(250.0),
+        /// Along the move; `None` takes over the previous move's end speed.
+        pub start_speed: Option<Speed> = Some(Speed::StepsPerSecond(250.0)),
+        /// `None` is a given start speed, or 0.
+        pub end_speed: Option<Speed> = None,
         pub max_speed: Speed = Speed::StepsPerSecond(4000.0),
         pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(9000.0),
+        /// `None` is the acceleration.
+        pub deceleration: Option<Acceleration> = None,
         pub method: TrapezoidMethod = TrapezoidMethod::Table,
         /// Clock of the timer that counts the reloads; only for the table.
         pub timer_hz: u32 = 1_000_000,
@@ -113,6 +124,10 @@ parameters! { (Clone, Debug, PartialEq)
         pub method: CosineMethod = CosineMethod::Exact,
         /// Length of a slice, the paper's TS, 0.00001 to 0.1; only for `sliced`.
         pub slice_s: f64 = 0.001,
+        /// Along the move; `None` takes over the previous move's end speed.
+        pub start_speed: Option<Speed> = None,
+        /// `None` is 0.
+        pub end_speed: Option<Speed> = None,
     }
 
     /// Shaped ramps: a distance in a given time, like the cosine S-curve.
@@ -125,6 +140,10 @@ parameters! { (Clone, Debug, PartialEq)
         pub sigmoid_range: f64 = 6.0,
         /// Time constants per ramp, 0.1 to 20; only for the exponential.
         pub time_constants: f64 = 4.0,
+        /// Along the move; `None` takes over the previous move's end speed.
+        pub start_speed: Option<Speed> = None,
+        /// `None` is 0.
+        pub end_speed: Option<Speed> = None,
     }
 
     /// Sine as segments of constant rate (SWorldJournal issue 11), from the right extreme to the left one and back.
@@ -149,6 +168,47 @@ parameters! { (Clone, Debug, PartialEq)
         pub max_speed: Speed = Speed::StepsPerSecond(10_000.0),
         pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(100_000.0),
         pub max_jerk: Jerk = Jerk::StepsPerSecond3(2_000_000.0),
+        /// `None` is the acceleration.
+        pub max_deceleration: Option<Acceleration> = None,
+        /// Along the move; `None` takes over the previous move's end speed.
+        pub start_speed: Option<Speed> = None,
+        /// `None` is 0.
+        pub end_speed: Option<Speed> = None,
+    }
+
+    /// A new target, which replaces the rest of the previous move.
+    pub struct Retarget {
+        /// Time of the cut, after the start of the previous move.
+        pub at_s: f64 = 0.1,
+        pub target: Target = Target::Stop(Stop {}),
+        pub profile: LimitedProfile = LimitedProfile::JerkLimited,
+        /// `None` is the axis' limit; the same for those below.
+        pub max_speed: Option<Speed> = None,
+        pub max_acceleration: Option<Acceleration> = None,
+        pub max_deceleration: Option<Acceleration> = None,
+        pub max_jerk: Option<Jerk> = None,
+    }
+
+    /// A speed as a target.
+    pub struct SpeedTarget {
+        /// Negative to the left.
+        pub speed: Speed = Speed::StepsPerSecond(0.0),
+        /// Time at that speed.
+        pub hold_s: f64 = 0.0,
+    }
+
+    /// The fastest stop.
+    pub struct Stop {}
+
+    /// Limits of an axis, for moves without their own.
+    pub struct AxisLimits {
+        pub max_speed: Speed = Speed::StepsPerSecond(10_000.0),
+        pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(100_000.0),
+        /// `None` is the acceleration.
+        pub max_deceleration: Option<Acceleration> = None,
+        pub max_jerk: Jerk = Jerk::StepsPerSecond3(2_000_000.0),
+        /// Maximum jump of the speed; `None` is not checked.
+        pub start_stop_speed: Option<Speed> = None,
     }
 
     /// A distance at a constant speed, without ramps.
@@ -178,7 +238,28 @@ parameters! { (Clone, Debug, PartialEq)
         pub moves: Vec<Move> = vec![Move::default()],
         /// Motor, supply and load; `None` skips the torque computations.
         pub motor: Option<Motor> = None,
+        pub limits: AxisLimits = AxisLimits::default(),
+        /// Shapes all moves of the axis.
+        pub input_shaper: Option<InputShaper> = None,
     }
+}
+
+/// A new target of a move.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// From the start of the motion; the axis comes to rest there.
+    Position(Distance),
+    Speed(SpeedTarget),
+    Stop(Stop),
+}
+
+/// Profile of a move within limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LimitedProfile {
+    #[default]
+    JerkLimited,
+    /// The acceleration jumps; the jerk is not limited.
+    Trapezoid,
 }
 
 /// Step times of a trapezoid.
@@ -289,6 +370,7 @@ mod tests {
             (Move::Trapezoid(Trapezoid::default()), None),
             (Move::Staircase(Staircase::default()), None),
             (Move::JerkLimited(JerkLimited::default()), None),
+            (Move::Retarget(Retarget::default()), None),
             (Move::Constant(Constant::default()), None),
         ];
         for (given, requested_s) in rows {

@@ -107,6 +107,8 @@ fn remedy_for(quantity: &str) -> &'static str {
         "steps" => "a shorter motion, or run it by ticks",
         "steps of a table" => "a shorter motion, or a table for each part of it",
         "steps to be measured" | "seconds" | "cycles" => "a shorter motion",
+        "changes of a shaped curve" => "fewer moves, periods or points, or no input shaper",
+        "way-points of all axes" => "fewer points",
         "slices" => "longer slices, a shorter duration or the exact method",
         "sine segments" => "a larger maximum deviation or fewer sines",
         "entries" => "a shorter motion or a larger tolerance",
@@ -126,35 +128,152 @@ pub enum Cause {
     /// A value of any kind is wrong.
     Value(ValueError),
     /// The unit is not available for this kind of mechanics.
-    NoSuchUnit { given: f64, unit: &'static str, mechanics: &'static str },
+    NoSuchUnit {
+        given: f64,
+        unit: &'static str,
+        mechanics: &'static str,
+    },
     /// Two ramps are longer than the move.
-    RampTooLong { ramp_s: f64, duration_s: f64 },
+    RampTooLong {
+        ramp_s: f64,
+        duration_s: f64,
+    },
     /// The top speed is below the start speed; both in steps/s.
-    TopBelowStart { top: f64, start: f64 },
+    TopBelowStart {
+        top: f64,
+        start: f64,
+    },
     /// The top speed is above the maximum of the table; both in steps/s.
-    TopAboveTable { top: f64, max: f64 },
+    TopAboveTable {
+        top: f64,
+        max: f64,
+    },
     /// The table's timer is slower than the rate in steps/s.
-    TimerTooSlow { rate: f64, timer_hz: u32 },
+    TimerTooSlow {
+        rate: f64,
+        timer_hz: u32,
+    },
     /// A speed that follows from other numbers is too high; both in steps/s.
-    TooFast { rate: f64, max: f64 },
+    TooFast {
+        rate: f64,
+        max: f64,
+    },
     /// Slices are so short that none has a step, even at the top speed of `rate` steps/s.
-    SliceTooShort { rate: f64, slice_s: f64 },
+    SliceTooShort {
+        rate: f64,
+        slice_s: f64,
+    },
     /// Slices cannot contain all steps, even at the maximum rate in steps/s.
-    SlicesTooFew { slices: u64, slice_s: f64, steps: u64, rate: f64 },
+    SlicesTooFew {
+        slices: u64,
+        slice_s: f64,
+        steps: u64,
+        rate: f64,
+    },
     /// A distance rounds to 0 steps.
-    NoSteps { steps: f64 },
+    NoSteps {
+        steps: f64,
+    },
     /// The time of a point is not later than that of the previous point by at least `min`; all in s.
-    NotRising { given: f64, before: f64, min: f64 },
+    NotRising {
+        given: f64,
+        before: f64,
+        min: f64,
+    },
+    /// A speed at the start or the end of a move, in steps/s, is above the move's maximum.
+    EdgeAboveMax {
+        speed: f64,
+        max: f64,
+    },
+    /// A speed along the axis in steps/s points against the travel of a move.
+    SpeedAgainstMove {
+        speed: f64,
+        steps: i64,
+    },
+    /// A move is shorter than the ramp between its start and end speeds; distances in steps, the jerk may be infinite.
+    TooShortForRamp {
+        steps: f64,
+        needed: f64,
+        from: f64,
+        to: f64,
+        acceleration: f64,
+        jerk: f64,
+    },
+    /// A move in a given time would have to stop or reverse between its start and end speeds.
+    NoPlateau {
+        steps: f64,
+        needed: f64,
+        plateau: f64,
+        start: f64,
+        end: f64,
+    },
+    /// The speed in steps/s jumps at the start or the end of a move by more than the start-stop speed.
+    JumpTooHigh {
+        before: f64,
+        after: f64,
+        jump: f64,
+        max: f64,
+        at: &'static str,
+    },
+    /// A move follows a table instead of a curve.
+    FollowsTable {
+        what: &'static str,
+        remedy: &'static str,
+    },
+    /// A move that needs a whole step begins at this position in steps.
+    BetweenSteps {
+        position: f64,
+    },
+    /// A new target without a move before it.
+    NothingToRetarget,
+    /// A cut after the end of the move; both in s.
+    CutTooLate {
+        at_s: f64,
+        duration_s: f64,
+    },
+    RetargetInGroup,
+    /// A group ends before its slowest move; both in s.
+    GroupTooShort {
+        duration_s: f64,
+        needed_s: f64,
+    },
+    /// A speed in steps/s is given at a point where the axis starts, ends, reverses or rests.
+    SpeedWhereAxisStands {
+        speed: f64,
+    },
+    /// A section takes so long that an axis would have to slow down between the given speeds in steps/s.
+    SectionTooSlow {
+        duration_s: f64,
+        max_s: f64,
+        from: f64,
+        to: f64,
+    },
     /// Tick `tick` (from 0) needs more steps than its slots allow: `rate` instead of `limit` in steps/s.
-    TooManySteps { tick: u64, steps: u64, slots: u8, rate: f64, limit: f64 },
+    TooManySteps {
+        tick: u64,
+        steps: u64,
+        slots: u8,
+        rate: f64,
+        limit: f64,
+    },
     /// A segment of steps has a count of 0.
     EmptySegment,
     /// The interval of a segment's step (from 1), in 1/65536 cycle, is out of its range.
-    SegmentInterval { step: u64, interval: i128, pulse: PulseTimes },
+    SegmentInterval {
+        step: u64,
+        interval: i128,
+        pulse: PulseTimes,
+    },
     /// The end of a segment, in 1/65536 cycle, exceeds 64 bits.
-    SegmentEndTooLate { end: i128 },
+    SegmentEndTooLate {
+        end: i128,
+    },
     /// A step (from 1) of a motion follows the previous step, or the start, after too few cycles.
-    StepTooSoon { step: u64, interval: u64, pulse: PulseTimes },
+    StepTooSoon {
+        step: u64,
+        interval: u64,
+        pulse: PulseTimes,
+    },
 }
 
 impl From<ValueError> for Cause {
@@ -249,6 +368,91 @@ impl fmt::Display for Cause {
                 Short(*given),
                 Short(*min),
                 Short(*before)
+            ),
+            Self::EdgeAboveMax { speed, max } => write!(
+                f,
+                "{} steps/s is above the maximum speed of {} steps/s; use at most {} steps/s",
+                outside(*speed, 0.0..=*max),
+                Short(*max),
+                rounded_down(*max)
+            ),
+            Self::SpeedAgainstMove { speed, steps } => write!(
+                f,
+                "a speed of {} steps/s points against the travel of {steps} steps; use a speed of 0, or retarget",
+                Short(*speed)
+            ),
+            Self::TooShortForRamp { steps, needed, from, to, acceleration, jerk } => {
+                let change = if to > from { "speed up" } else { "slow down" };
+                let jerk =
+                    if jerk.is_finite() { format!(" and {} steps/s^3", Short(*jerk)) } else { String::new() };
+                write!(
+                    f,
+                    "{} steps are too short to {change} from {} to {} steps/s: that takes {} steps at {} steps/s^2{jerk}; use at least {} steps",
+                    outside(*steps, *needed..=f64::MAX),
+                    Short(*from),
+                    Short(*to),
+                    Short(*needed),
+                    Short(*acceleration),
+                    Short(libm::ceil(*needed))
+                )
+            }
+            Self::NoPlateau { steps, needed, plateau, start, end } => write!(
+                f,
+                "{} steps from {} to {} steps/s need a plateau of {} steps/s, which is not above 0; use more than {} steps, or shorter ramps",
+                Short(*steps),
+                Short(*start),
+                Short(*end),
+                Short(*plateau),
+                Short(libm::ceil(*needed))
+            ),
+            Self::JumpTooHigh { before, after, jump, max, at } => write!(
+                f,
+                "the speed jumps from {} to {} steps/s at the {at} of the move, and {} steps/s is above the start-stop speed of {} steps/s; use a jump of at most {} steps/s, or a higher start-stop speed",
+                Short(*before),
+                Short(*after),
+                outside(*jump, 0.0..=*max),
+                Short(*max),
+                rounded_down(*max)
+            ),
+            Self::FollowsTable { what, remedy } => {
+                write!(f, "a move that follows a table {what}; use {remedy}")
+            }
+            Self::BetweenSteps { position } => write!(
+                f,
+                "the move begins at {position} steps, between two steps, which its kind cannot; use a jerk_limited, trapezoid, cosine, ramps or constant move first, or retarget to a position"
+            ),
+            Self::NothingToRetarget => {
+                f.write_str("there is no previous move to retarget; use a move before it")
+            }
+            Self::CutTooLate { at_s, duration_s } => write!(
+                f,
+                "a cut at {} s is after the end of the previous move, which takes {} s; use at most {} s",
+                outside(*at_s, 0.0..=*duration_s),
+                Short(*duration_s),
+                rounded_down(*duration_s)
+            ),
+            Self::RetargetInGroup => {
+                f.write_str("a move of a group cannot be retargeted; use a move of its own kind")
+            }
+            Self::GroupTooShort { duration_s, needed_s } => write!(
+                f,
+                "{} s are too short for the slowest move, which takes {} s; use at least {} s, or null",
+                outside(*duration_s, *needed_s..=f64::MAX),
+                Short(*needed_s),
+                rounded_up(*needed_s)
+            ),
+            Self::SpeedWhereAxisStands { speed } => write!(
+                f,
+                "{} steps/s is given at a point where the axis starts, ends, reverses or rests; use 0 or null",
+                Short(*speed)
+            ),
+            Self::SectionTooSlow { duration_s, max_s, from, to } => write!(
+                f,
+                "the section takes {} s, but with {} and {} steps/s at its ends this axis can take at most {} s; use lower speeds or null",
+                outside(*duration_s, 0.0..=*max_s),
+                Short(*from),
+                Short(*to),
+                Short(*max_s)
             ),
             Self::TooManySteps { tick, steps, slots, rate, limit } => write!(
                 f,

@@ -74,7 +74,7 @@ fn due(given: Move) -> Vec<ScheduledStep> {
 fn trapezoid(steps: f64) -> Move {
     Move::Trapezoid(Trapezoid {
         distance: Distance::Steps(steps),
-        start_speed: Speed::StepsPerSecond(250.0),
+        start_speed: Some(Speed::StepsPerSecond(250.0)),
         max_speed: Speed::StepsPerSecond(20_000.0),
         max_acceleration: Acceleration::StepsPerSecond2(9000.0),
         ..Trapezoid::default()

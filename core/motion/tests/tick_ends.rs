@@ -26,11 +26,12 @@ fn by_table(steps: f64) -> [Move; 2] {
     [
         Move::Trapezoid(Trapezoid {
             distance: distance.clone(),
-            start_speed: speed.clone(),
+            start_speed: Some(speed.clone()),
             max_speed: speed.clone(),
             max_acceleration: Acceleration::StepsPerSecond2(1000.0),
             method: TrapezoidMethod::Table,
             timer_hz: 1_000_000,
+            ..Trapezoid::default()
         }),
         Move::Staircase(Staircase { distance, top_speed: speed, ..Staircase::default() }),
     ]
@@ -98,11 +99,12 @@ fn steps_due_agree_with_integer_arithmetic() {
             _ => {
                 let trapezoid = Trapezoid {
                     distance,
-                    start_speed: speed.clone(),
+                    start_speed: Some(speed.clone()),
                     max_speed: speed,
                     max_acceleration: Acceleration::StepsPerSecond2(1000.0),
                     method: TrapezoidMethod::Table,
                     timer_hz,
+                    ..Trapezoid::default()
                 };
                 (Move::Trapezoid(trapezoid), true)
             }

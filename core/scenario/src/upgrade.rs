@@ -157,6 +157,9 @@ mod tests {
                 Vec::from([format!(r#"{{"{}":77}}"#, group.fields[0].name), r#"{"preset":"a4979"}"#.into()])
             }
             Type::Group(_) => Vec::from([r#"{"bridge_ohm":0.5}"#.into()]),
+            Type::Optional(Type::Group(group)) if matches!(group.fields[0].ty, Type::Number) => {
+                Vec::from([format!(r#"{{"{}":77}}"#, group.fields[0].name)])
+            }
             Type::Optional(Type::Group(_)) => Vec::from([r#"{"preset":"a4979"}"#.into()]),
             _ => Vec::from(["7".into()]),
         };

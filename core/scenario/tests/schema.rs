@@ -102,6 +102,17 @@ fn what_the_form_asks_is_explained() {
         of_plant.contains(&group.name)
             || (group.name == "Motor" && begins.iter().any(|begin| field.name.starts_with(begin)))
     };
+    // Neither for groups, limits and input shapers.
+    let of_groups = [
+        "AxisLimits",
+        "GroupMove",
+        "LineGroup",
+        "ShaperSettings",
+        "SpeedTarget",
+        "TimeGroup",
+        "WayPoint",
+        "WayPointGroup",
+    ];
     // So are the numbers of a stand-alone controller; its words have cards.
     let mut of_panel = Vec::new();
     each(&Scenario::TYPE, "", &mut Vec::new(), &mut |path, group, _| {
@@ -113,6 +124,7 @@ fn what_the_form_asks_is_explained() {
         asked(group, field)
             && field.explanation.is_empty()
             && !of_plant(group, field)
+            && !of_groups.contains(&group.name)
             && !of_panel.contains(&group.name)
     };
     assert_eq!(problems(unexplained), [""; 0]);
@@ -162,6 +174,15 @@ fn what_the_page_takes_has_every_group_with_its_defaults() {
         serde_json::from_str::<serde_json::Value>(&Scenario::default().to_json()).expect("JSON");
     // A plant is written only where there is one.
     scenario["plant"] = serde_json::Value::Null;
+    // So are groups, limits, input shapers and the speeds at the ends of moves.
+    let motion = &mut scenario["source"]["motion"];
+    motion["groups"] = serde_json::json!([]);
+    let axis = &mut motion["axes"][0];
+    axis["limits"] = schema["groups"]["AxisLimits"]["default"].clone();
+    axis["input_shaper"] = serde_json::Value::Null;
+    for speed in ["start_speed", "end_speed"] {
+        axis["moves"][0]["cosine"][speed] = serde_json::Value::Null;
+    }
     assert_eq!(schema["groups"]["Scenario"]["default"], scenario);
     for (name, group) in schema["groups"].as_object().expect("groups") {
         let default = group["default"].as_object().expect("a map");

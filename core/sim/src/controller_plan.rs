@@ -4,7 +4,7 @@ use crate::hosts::framed_host::{FramedHost, Job};
 use crate::line::{bus_load::carries, noise::Noise};
 use alloc::{format, string::String, sync::Arc, vec, vec::Vec};
 use stepscope_motion::step_tables::{AxesPath, exact_segments, ticks};
-use stepscope_motion::{AxisPlan, plan_lists};
+use stepscope_motion::{AxisList, AxisPlan, plan_lists};
 use stepscope_peripheral::config::{Config, Protocol};
 use stepscope_peripheral::segment::{CheckedSegments, PulseTimes};
 use stepscope_peripheral::wire::frame::{ACK_LEN, encode_frame};
@@ -64,9 +64,12 @@ pub(super) fn plans(scenario: &Scenario) -> Result<Vec<Vec<AxisPlan>>, Problems>
         return Ok(vec![Vec::new(); 1 + scenario.controllers.len()]);
     };
     let additional = scenario.controllers.iter().take(MAX_CONTROLLERS - 1).enumerate();
-    let additional = additional.map(|(index, one)| (format!("controllers[{index}].axes"), &one.axes[..]));
-    plan_lists([("source.motion.axes".into(), &motion.axes[..])].into_iter().chain(additional))
-        .map_err(of_motion)
+    let additional = additional.map(|(index, one)| AxisList {
+        path: format!("controllers[{index}].axes"),
+        axes: &one.axes,
+        groups: &[],
+    });
+    plan_lists([motion.axis_list()].into_iter().chain(additional)).map_err(of_motion)
 }
 
 pub(super) fn controller_plans(

@@ -28,24 +28,33 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
                 let duration_s = f64::from(steps) * 0.0003;
                 let distance = Distance::Steps(f64::from(if right { steps } else { -steps }));
                 let (ramp_s, method) = (duration_s * ramp, CosineMethod::Sliced);
-                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s, ..Cosine::default() })
             }
         ),
         (steps.clone(), 0.02..2.0, 0.0..=0.5, ramp_shape(), 0.1..=20.0).prop_map(
             |(distance, duration_s, ramp, shape, parameter)| {
                 let (ramp_s, sigmoid_range, time_constants) = (duration_s * ramp, parameter, parameter);
-                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
+                Move::Ramps(Ramps {
+                    distance,
+                    duration_s,
+                    ramp_s,
+                    shape,
+                    sigmoid_range,
+                    time_constants,
+                    ..Ramps::default()
+                })
             }
         ),
         (steps.clone(), 100.0..2000.0, 0.0..4000.0, 1.0..1e5, method).prop_map(
             |(distance, start, climb, acceleration, method)| {
                 Move::Trapezoid(Trapezoid {
                     distance,
-                    start_speed: Speed::StepsPerSecond(start),
+                    start_speed: Some(Speed::StepsPerSecond(start)),
                     max_speed: Speed::StepsPerSecond(start + climb),
                     max_acceleration: Acceleration::StepsPerSecond2(acceleration),
                     method,
                     timer_hz: 1_000_000,
+                    ..Trapezoid::default()
                 })
             }
         ),
@@ -73,6 +82,7 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
                 max_speed: Speed::StepsPerSecond(speed),
                 max_acceleration: Acceleration::StepsPerSecond2(acceleration),
                 max_jerk: Jerk::StepsPerSecond3(jerk),
+                ..JerkLimited::default()
             })
         }),
         curve(),

@@ -2,6 +2,7 @@
 
 mod axis;
 mod breakpoints;
+mod continuous;
 mod motor;
 mod problems;
 mod timed;

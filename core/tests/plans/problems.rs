@@ -1,7 +1,7 @@
 //! Problems of every kind of move, and the bounds that axes share.
 
 use super::{axis, check};
-use stepscope_core::motion::{AxisPlan, Problems, Profile, plan_axis, plan_lists};
+use stepscope_core::motion::{AxisList, AxisPlan, Problems, Profile, plan_axis, plan_lists};
 
 fn plan(json: &str) -> Result<AxisPlan, Problems> {
     plan_axis(&axis(json), "axis")
@@ -78,11 +78,8 @@ fn an_axis_has_bounds_on_time_and_tables() {
 fn axes_share_the_bounds_on_tables_and_segments() {
     let problems = |each: &str, axes: usize| {
         let axes = vec![axis(each); axes];
-        let found = plan_lists([(String::from("source.motion.axes"), &axes[..])])
-            .err()
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>();
+        let list = AxisList { path: "source.motion.axes".into(), axes: &axes, groups: &[] };
+        let found: Vec<_> = plan_lists([list]).err().into_iter().flatten().collect();
         found.iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     let table = r#"{"moves":[{"trapezoid":{"distance":{"steps":800000},"top_speed":{"steps_s":1e6},"acceleration":{"steps_s2":1}}}]}"#;

@@ -66,7 +66,7 @@ pub(crate) fn table_axis(steps: u32) -> Axis {
     let speed = Speed::StepsPerSecond;
     let trapezoid = Trapezoid {
         distance: Distance::Steps(steps.into()),
-        start_speed: speed(1.0),
+        start_speed: Some(speed(1.0)),
         max_speed: speed(200_000.0),
         max_acceleration: Acceleration::StepsPerSecond2(200_000.0),
         method: TrapezoidMethod::Exact,

@@ -1,6 +1,6 @@
 //! Scenarios of the right types with any numbers in them: most are refused, some are huge.
 
-use super::segmented;
+use super::{grouped, segmented};
 use proptest::prelude::*;
 use stepscope_core::inspect::trace::drivers::DRIVERS;
 use stepscope_core::{
@@ -8,8 +8,9 @@ use stepscope_core::{
         mechanics::{Acceleration, Direct, Distance, Jerk, Mechanics, Rotary, Screw, Speed, Wheel},
         motor::{Decay, Drive, Motor, Regulator},
         moves::{
-            Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit,
-            Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
+            Axis, AxisLimits, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point,
+            PointUnit, Points, RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid,
+            TrapezoidMethod,
         },
     },
     peripheral::config::{Bus, DirLine, Distribution, Protocol, PulsePhasing},
@@ -89,7 +90,7 @@ pub fn driven() -> BoxedStrategy<Scenario> {
 }
 
 /// The default often, else small numbers, the ends of the type, or any.
-fn small_or_any<T>(default: T) -> impl Strategy<Value = T> + Clone
+pub(super) fn small_or_any<T>(default: T) -> impl Strategy<Value = T> + Clone
 where
     T: Arbitrary + Copy + TryFrom<u64> + 'static,
     T::Strategy: Clone,
@@ -101,7 +102,7 @@ where
 }
 
 /// Any finite number, round and absurd ones often.
-fn number(default: f64) -> impl Strategy<Value = f64> + Clone {
+pub(super) fn number(default: f64) -> impl Strategy<Value = f64> + Clone {
     let odd = [
         0.0,
         -0.0,
@@ -255,10 +256,11 @@ fn source() -> BoxedStrategy<Source> {
     ];
     let list = (small_or_any(1), prop::collection::vec(segment, 0..5))
         .prop_map(|(start_cycle, segments)| ChannelSegments { start_cycle, segments });
+    let groups = prop_oneof![3 => Just(Vec::new()), 1 => prop::collection::vec(grouped::group(), 1..3)];
     let engine = prop_oneof![Just(MotionEngine::Ticks), Just(MotionEngine::Segments)];
     prop_oneof![
-        4 => (prop::collection::vec(axis(), 0..3), engine)
-            .prop_map(|(axes, engine)| Source::Motion(Motion { axes, engine })),
+        4 => (prop::collection::vec(axis(), 0..3), engine, groups)
+            .prop_map(|(axes, engine, groups)| Source::Motion(Motion { axes, engine, groups })),
         1 => prop::collection::vec(list, 0..3).prop_map(|channels| Source::Segments(SegmentLists { channels })),
         1 => prop::collection::vec(hex, 0..20).prop_map(|packets| Source::Packets(Packets { packets })),
         1 => prop::collection::vec(send, 0..6).prop_map(|sends| Source::Line(LineScript { sends })),
@@ -278,8 +280,17 @@ fn axis() -> BoxedStrategy<Axis> {
         }),
         1 => number(0.01).prop_map(|step_mm| Mechanics::Direct(Direct { step_mm })),
     ];
-    (mechanics, prop::collection::vec(one_move(), 0..4), prop::option::weighted(0.2, motor()))
-        .prop_map(|(mechanics, moves, motor)| Axis { mechanics, moves, motor })
+    let limits = prop_oneof![3 => Just(AxisLimits::default()), 1 => grouped::limits()];
+    let shaper = prop::option::weighted(0.2, grouped::shaper());
+    let moves = prop::collection::vec(prop_oneof![4 => one_move(), 1 => grouped::continued()], 0..4);
+    (mechanics, moves, prop::option::weighted(0.2, motor()), limits, shaper)
+        .prop_map(|(mechanics, moves, motor, limits, input_shaper)| Axis {
+            mechanics,
+            moves,
+            motor,
+            limits,
+            input_shaper,
+        })
         .boxed()
 }
 
@@ -396,7 +407,7 @@ fn plant() -> impl Strategy<Value = PlantSettings> {
     )
 }
 
-fn distance(steps: f64) -> impl Strategy<Value = Distance> + Clone {
+pub(super) fn distance(steps: f64) -> impl Strategy<Value = Distance> + Clone {
     prop_oneof![
         4 => number(steps).prop_map(Distance::Steps),
         1 => number(1.0).prop_map(Distance::Millimeters),
@@ -404,7 +415,7 @@ fn distance(steps: f64) -> impl Strategy<Value = Distance> + Clone {
     ]
 }
 
-fn speed(steps_s: f64) -> impl Strategy<Value = Speed> + Clone {
+pub(super) fn speed(steps_s: f64) -> impl Strategy<Value = Speed> + Clone {
     prop_oneof![
         4 => number(steps_s).prop_map(Speed::StepsPerSecond),
         1 => number(1.0).prop_map(Speed::MillimetersPerSecond),
@@ -413,7 +424,7 @@ fn speed(steps_s: f64) -> impl Strategy<Value = Speed> + Clone {
     ]
 }
 
-fn acceleration() -> impl Strategy<Value = Acceleration> + Clone {
+pub(super) fn acceleration() -> impl Strategy<Value = Acceleration> + Clone {
     prop_oneof![
         4 => number(9000.0).prop_map(Acceleration::StepsPerSecond2),
         1 => number(10.0).prop_map(Acceleration::MillimetersPerSecond2),
@@ -426,7 +437,7 @@ fn ramp_shape() -> impl Strategy<Value = RampShape> {
     prop::sample::select(vec![Sigmoid, Bezier, Straight, Exponential])
 }
 
-fn jerk() -> impl Strategy<Value = Jerk> + Clone {
+pub(super) fn jerk() -> impl Strategy<Value = Jerk> + Clone {
     prop_oneof![
         4 => number(2e6).prop_map(Jerk::StepsPerSecond3),
         1 => number(1e3).prop_map(Jerk::MillimetersPerSecond3),
@@ -442,7 +453,7 @@ fn curve() -> impl Strategy<Value = Points> {
         .prop_map(|(unit, interpolation, points)| Points { unit, interpolation, points })
 }
 
-fn one_move() -> BoxedStrategy<Move> {
+pub(super) fn one_move() -> BoxedStrategy<Move> {
     prop_oneof![
         (
             distance(2000.0),
@@ -456,11 +467,12 @@ fn one_move() -> BoxedStrategy<Move> {
                 let method = if table { TrapezoidMethod::Table } else { TrapezoidMethod::Exact };
                 Move::Trapezoid(Trapezoid {
                     distance,
-                    start_speed,
+                    start_speed: Some(start_speed),
                     max_speed: top_speed,
                     max_acceleration: acceleration,
                     method,
                     timer_hz,
+                    ..Trapezoid::default()
                 })
             }),
         (distance(9000.0), speed(5000.0), small_or_any(3), any::<bool>(), speed(1000.0), speed(20_000.0))
@@ -471,12 +483,20 @@ fn one_move() -> BoxedStrategy<Move> {
         (distance(3200.0), number(0.4), number(0.2), any::<bool>(), number(0.001)).prop_map(
             |(distance, duration_s, ramp_s, sliced, slice_s)| {
                 let method = if sliced { CosineMethod::Sliced } else { CosineMethod::Exact };
-                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s, ..Cosine::default() })
             }
         ),
         (distance(3200.0), number(0.4), number(0.2), ramp_shape(), number(6.0), number(4.0)).prop_map(
             |(distance, duration_s, ramp_s, shape, sigmoid_range, time_constants)| {
-                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
+                Move::Ramps(Ramps {
+                    distance,
+                    duration_s,
+                    ramp_s,
+                    shape,
+                    sigmoid_range,
+                    time_constants,
+                    ..Ramps::default()
+                })
             }
         ),
         (distance(1000.0), number(0.5), small_or_any(4), number(0.006)).prop_map(
@@ -488,7 +508,13 @@ fn one_move() -> BoxedStrategy<Move> {
             .prop_map(|(amplitude, period_s, periods)| Move::Sine(Sine { amplitude, period_s, periods })),
         (distance(3200.0), speed(10_000.0), acceleration(), jerk()).prop_map(
             |(distance, max_speed, max_acceleration, max_jerk)| {
-                Move::JerkLimited(JerkLimited { distance, max_speed, max_acceleration, max_jerk })
+                Move::JerkLimited(JerkLimited {
+                    distance,
+                    max_speed,
+                    max_acceleration,
+                    max_jerk,
+                    ..JerkLimited::default()
+                })
             }
         ),
         curve().prop_map(Move::Points),

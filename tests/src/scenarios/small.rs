@@ -153,11 +153,12 @@ fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
                 let method = if table { TrapezoidMethod::Table } else { TrapezoidMethod::Exact };
                 Move::Trapezoid(Trapezoid {
                     distance: Distance::Steps(steps),
-                    start_speed: speed((rate * start * top).max(1.0)),
+                    start_speed: Some(speed((rate * start * top).max(1.0))),
                     max_speed: speed((rate * top).max(1.0)),
                     max_acceleration: Acceleration::StepsPerSecond2(climb * rate * rate),
                     method,
                     timer_hz: 1_000_000,
+                    ..Trapezoid::default()
                 })
             }
         ),
@@ -184,6 +185,7 @@ fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
                 max_speed: speed(rate * part),
                 max_acceleration: Acceleration::StepsPerSecond2(climb * rate * rate),
                 max_jerk: Jerk::StepsPerSecond3(jerk * climb * rate * rate * rate),
+                ..JerkLimited::default()
             })
         }),
         (steps.clone(), steps.clone(), any::<bool>()).prop_map(move |(there, back, smooth)| {

@@ -132,12 +132,11 @@ proptest! {
         let top = top.max(start);
         let given = stepscope_core::motion::moves::Trapezoid {
             distance: Distance::Steps(steps),
-            start_speed: speed(start),
+            start_speed: Some(speed(start)),
             max_speed: speed(top),
             max_acceleration: Acceleration::StepsPerSecond2(acceleration),
             method: TrapezoidMethod::Exact,
-            timer_hz: 1,
-        };
+            timer_hz: 1, ..stepscope_core::motion::moves::Trapezoid::default() };
         if let Some(plan) = plan(Move::Trapezoid(given))? {
             let ideal = ideal::trapezoid(libm::fabs(steps), start, top, acceleration);
             check_one_way(&plan, &ideal, steps, clock_hz)?;
@@ -165,8 +164,7 @@ proptest! {
             distance: Distance::Steps(steps),
             max_speed: Speed::StepsPerSecond(speed),
             max_acceleration: Acceleration::StepsPerSecond2(acceleration),
-            max_jerk: Jerk::StepsPerSecond3(jerk),
-        };
+            max_jerk: Jerk::StepsPerSecond3(jerk), ..JerkLimited::default() };
         if let Some(plan) = plan(Move::JerkLimited(given))? {
             let ideal = ideal::jerk_limited(libm::fabs(steps), speed, acceleration, jerk);
             // The quickest move that the limits allow, neither more nor less.
@@ -300,18 +298,27 @@ fn own_curve() -> impl Strategy<Value = Move> {
             |(distance, (duration_s, part), shape, sharp)| {
                 let ramp_s = duration_s * part;
                 let (sigmoid_range, time_constants) = (sharp, sharp);
-                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
+                Move::Ramps(Ramps {
+                    distance,
+                    duration_s,
+                    ramp_s,
+                    shape,
+                    sigmoid_range,
+                    time_constants,
+                    ..Ramps::default()
+                })
             }
         ),
         (distance.clone(), magnitude(0.5, 1e6), 1.0..100.0_f64, magnitude(1e-3, 1e9), magnitude(1e4, 1e9))
             .prop_map(move |(distance, start, times, acceleration, timer)| {
                 Move::Trapezoid(stepscope_core::motion::moves::Trapezoid {
                     distance,
-                    start_speed: speed(start),
+                    start_speed: Some(speed(start)),
                     max_speed: speed((start * times).min(1e7)),
                     max_acceleration: Acceleration::StepsPerSecond2(acceleration),
                     method: TrapezoidMethod::Table,
                     timer_hz: timer as u32,
+                    ..stepscope_core::motion::moves::Trapezoid::default()
                 })
             }),
         (distance.clone(), magnitude(1.0, 1e6), 1..=5_u8, any::<bool>(), magnitude(1.0, 1e6)).prop_map(

@@ -137,7 +137,11 @@ function placesOf(state) {
       acceleration: inSteps(move[kind].max_acceleration),
       peak: moves.length === 1 ? derived.peak_speed_steps_s : undefined,
     };
-    const corner = cornerOf(move, rates);
+    const { start_speed, end_speed, deceleration, max_deceleration } = move[kind];
+    // The corners of a move between two speeds, or of one that is cut, are elsewhere.
+    const hasStart = kind === "trapezoid" ? start_speed === null : start_speed;
+    const isBetween = end_speed || deceleration || max_deceleration || hasStart;
+    const corner = isBetween || moves[at + 1]?.retarget ? null : cornerOf(move, rates);
     if (!corner) return [];
     const place = { path, move, rates, corner, start_s, end_s: start_s + duration_s, sign: Math.sign(steps) };
     // Without a plateau the corners coincide.

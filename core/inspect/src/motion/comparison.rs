@@ -20,7 +20,7 @@ use stepscope_motion::moves::{
     Axis, Constant, Cosine, CosineMethod, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
     RampShape, Ramps, Staircase, Trapezoid, TrapezoidMethod,
 };
-use stepscope_motion::{AxisPlan, Peaks, Problems, motor::Motor, plan_axis};
+use stepscope_motion::{AxisPlan, Peaks, Problems, Profile, motor::Motor, plan_axis};
 
 /// Acceleration of a staircase's first level in steps/s^2; the others are multiples.
 const LEVEL_STEPS_S2: f64 = 1000.0;
@@ -57,7 +57,7 @@ impl Request {
             slice_s,
             sigmoid_range,
             time_constants,
-            start_speed: start_speed.value(),
+            start_speed: start_speed.map_or(0.0, |speed| speed.value()),
             timer_hz,
         }
     }
@@ -65,6 +65,10 @@ impl Request {
     /// The request for move `index` of an axis; `None` if it ends where it begins.
     pub fn of(axis: &Axis, plan: &AxisPlan, index: usize, ramp_s: f64) -> Option<Self> {
         let (requested, planned) = (axis.moves.get(index)?, plan.moves().get(index)?);
+        // An input shaper makes one curve of all moves.
+        if matches!(planned.profile, Profile::Shaped(_)) {
+            return None;
+        }
         let steps = planned.profile.steps();
         let duration_s = requested.requested_s().unwrap_or_else(|| planned.profile.duration_s());
         let request = Self {
@@ -79,7 +83,8 @@ impl Request {
                 Self { sigmoid_range: *sigmoid_range, time_constants: *time_constants, ..request }
             }
             Move::Trapezoid(Trapezoid { start_speed, timer_hz, .. }) => {
-                Self { start_speed: speed(start_speed), timer_hz: *timer_hz, ..request }
+                let start_speed = start_speed.as_ref().map_or(0.0, speed);
+                Self { start_speed, timer_hz: *timer_hz, ..request }
             }
             Move::Staircase(Staircase { start_speed, .. }) => {
                 Self { start_speed: speed(start_speed), ..request }
@@ -97,20 +102,27 @@ impl Request {
         let start = libm::fmin(self.start_speed, rate / 2.0);
         match candidate {
             Candidate::Cosine(method) => {
-                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s })
+                Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s, ..Cosine::default() })
             }
-            Candidate::Ramps(shape) => {
-                Move::Ramps(Ramps { distance, duration_s, ramp_s, shape, sigmoid_range, time_constants })
-            }
+            Candidate::Ramps(shape) => Move::Ramps(Ramps {
+                distance,
+                duration_s,
+                ramp_s,
+                shape,
+                sigmoid_range,
+                time_constants,
+                ..Ramps::default()
+            }),
             Candidate::Trapezoid(method) => {
                 let top = (rate * duration_s - ramp_s * start) / (duration_s - ramp_s);
                 Move::Trapezoid(Trapezoid {
                     distance,
-                    start_speed: Speed::StepsPerSecond(start),
+                    start_speed: Some(Speed::StepsPerSecond(start)),
                     max_speed: Speed::StepsPerSecond(top),
                     max_acceleration: Acceleration::StepsPerSecond2((top - start) / ramp_s),
                     method,
                     timer_hz,
+                    ..Trapezoid::default()
                 })
             }
             Candidate::Staircase => {
@@ -131,6 +143,7 @@ impl Request {
                     max_speed: Speed::StepsPerSecond(speed),
                     max_acceleration: Acceleration::StepsPerSecond2(acceleration),
                     max_jerk: Jerk::StepsPerSecond3(3.0 * acceleration / ramp_s),
+                    ..JerkLimited::default()
                 })
             }
             Candidate::Points => Move::Points(Points {
@@ -246,8 +259,12 @@ pub fn compare(request: &Request) -> Vec<Row> {
 fn row(request: &Request, candidate: Candidate) -> Row {
     let requested_move = request.to_move(candidate);
     let Request { mechanics, motor, duration_s, .. } = request;
-    let axis =
-        Axis { mechanics: mechanics.clone(), moves: vec![requested_move.clone()], motor: motor.clone() };
+    let axis = Axis {
+        mechanics: mechanics.clone(),
+        moves: vec![requested_move.clone()],
+        motor: motor.clone(),
+        ..Axis::default()
+    };
     let plan = match plan_axis(&axis, "comparison") {
         Ok(plan) => plan,
         Err(problems) => return Row { candidate, requested_move, plan: None, cost: Err(problems) },
@@ -373,8 +390,10 @@ mod tests {
 
     #[test]
     fn a_move_of_an_axis_is_compared_with_its_own_numbers() {
-        let own =
-            Move::Trapezoid(Trapezoid { start_speed: Speed::StepsPerSecond(500.0), ..Trapezoid::default() });
+        let own = Move::Trapezoid(Trapezoid {
+            start_speed: Some(Speed::StepsPerSecond(500.0)),
+            ..Trapezoid::default()
+        });
         let axis = Axis { moves: vec![own], ..Axis::default() };
         let plan = plan_axis(&axis, "x").expect("it can be planned");
         let request = Request::of(&axis, &plan, 0, 0.05).expect("it goes somewhere");

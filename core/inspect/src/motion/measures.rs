@@ -165,6 +165,10 @@ pub fn ideal_to_actual(plan: &AxisPlan, pulses: &Pulses<'_>) -> CurveMetrics {
 }
 
 fn requested_s(axis: &Axis, plan: &AxisPlan) -> Option<f64> {
+    // Groups and input shapers add to the moves or replace them.
+    if axis.moves.len() != plan.moves().len() {
+        return None;
+    }
     let has_time = axis.moves.iter().any(|requested| requested.requested_s().is_some());
     let times = axis.moves.iter().zip(plan.moves());
     // In the order of the plan, so that the sum of equal times is equal.

@@ -103,7 +103,7 @@ fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
             let mechanics = axis.mechanics.clone();
             for planned in &mut axis.moves {
                 let single_move =
-                    Axis { mechanics: mechanics.clone(), moves: [planned.clone()].into(), motor: None };
+                    Axis { mechanics: mechanics.clone(), moves: [planned.clone()].into(), ..Axis::default() };
                 let Ok(plan) = plan_axis(&single_move, "axis") else { continue };
                 let factor = plan.peaks().speed / rates.limit;
                 if factor <= 1.0 {

@@ -7,6 +7,7 @@
 //! ```
 
 use crate::curves::curve::greater;
+use crate::round_half_up;
 use crate::timing::{CycleTime, Exact, F106};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +40,17 @@ impl Oscillation {
 
     pub(crate) fn step_count(&self) -> u64 {
         4 * self.amplitude * u64::from(self.periods)
+    }
+
+    /// Whole position at `t` s, where the distance from the start is `from_start`, and the number of steps before it.
+    pub(crate) fn due_within(&self, from_start: f64, t: f64) -> (i64, u64) {
+        let per_half = 2 * self.amplitude;
+        let half = ((2.0 * t / self.period_s) as u64).min(2 * u64::from(self.periods));
+        let returns = half % 2 == 1;
+        let from_extreme = if returns { per_half as f64 - from_start } else { from_start };
+        let due = round_half_up(from_extreme).unsigned_abs().min(per_half);
+        let distance = if returns { per_half - due } else { due } as i64;
+        (if self.starts_right { -distance } else { distance }, half * per_half + due)
     }
 
     /// Direction of half period `half` (from 0).

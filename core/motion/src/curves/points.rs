@@ -114,6 +114,20 @@ impl Points {
         speeds.fold((0, 0.0), |max, each| if each.1 > max.1 { each } else { max })
     }
 
+    /// Whole position at `t` s, and the number of steps before it in both directions.
+    pub(crate) fn due_within(&self, t: f64) -> (i64, u64) {
+        let index = self.pieces.partition_point(|piece| piece.to_s < t).min(self.pieces.len() - 1);
+        let (before, count) = match index.checked_sub(1) {
+            Some(previous) => (self.end_positions.get(previous), self.end_counts.get(previous)),
+            None => (Some(&0), Some(&0)),
+        };
+        let (Some(before), Some(count), Some(to)) = (before, count, self.end_positions.get(index)) else {
+            return (0, 0);
+        };
+        let due = round_half_up(self.position(t)).clamp(*before.min(to), *before.max(to));
+        (due, count + before.abs_diff(due))
+    }
+
     fn pieces_with_positions(&self) -> impl Iterator<Item = (&Cubic, i64, i64)> + '_ {
         let starts = core::iter::once(&0).chain(&self.end_positions);
         self.pieces.iter().zip(starts.zip(&self.end_positions)).map(|(piece, (from, to))| (piece, *from, *to))

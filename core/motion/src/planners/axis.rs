@@ -26,21 +26,14 @@ pub struct AxisPlan {
     moves: Vec<PlannedMove>,
     duration_s: f64,
     steps: i64,
+    /// The exact end position minus the whole one; not 0 if the axis stops between two steps.
+    end_offset: f64,
 }
 
 impl AxisPlan {
-    pub(crate) fn from_profiles(profiles: Vec<Profile>) -> Self {
-        let (mut start_s, mut start_steps) = (0.0, 0);
-        let moves = profiles
-            .into_iter()
-            .map(|profile| {
-                let planned = PlannedMove { start_s, start_steps, profile };
-                start_s += planned.profile.duration_s();
-                start_steps += planned.profile.steps();
-                planned
-            })
-            .collect();
-        Self { moves, duration_s: start_s, steps: start_steps }
+    /// `end_offset` is the exact end position minus the whole one.
+    pub(crate) fn new(moves: Vec<PlannedMove>, duration_s: f64, steps: i64, end_offset: f64) -> Self {
+        Self { moves, duration_s, steps, end_offset }
     }
 
     /// The moves, at least one.
@@ -56,6 +49,11 @@ impl AxisPlan {
     /// Position after all moves, in steps.
     pub fn steps(&self) -> i64 {
         self.steps
+    }
+
+    /// Exact position after all moves, in steps.
+    pub(crate) fn end_position(&self) -> f64 {
+        self.steps as f64 + self.end_offset
     }
 
     /// Number of steps in both directions.
@@ -87,7 +85,7 @@ impl AxisPlan {
     /// Position at `t` s in steps.
     pub fn position(&self, t: f64) -> f64 {
         if t >= self.duration_s {
-            return self.steps as f64;
+            return self.end_position();
         }
         self.move_at(t).map_or(0.0, |(planned, t)| planned.start_steps as f64 + planned.profile.position(t))
     }

@@ -6,11 +6,12 @@
 //!           +-----E---      left not yet. So ticks and segments of a motion always agree.
 //! ```
 
+use crate::curves::numeric::{Numeric, Shape};
 use crate::curves::{
     oscillation::Oscillation, sine::Sine, sine_segments::SineSegments, stepped::PAST_THE_STEP,
     trapezoid_table::TrapezoidTable,
 };
-use crate::timing::{CycleTime, F106, IsDueBefore, MAX_ERROR, tie};
+use crate::timing::{CycleTime, F106, IsDueBefore, MAX_ERROR, due_near, tie};
 use crate::{AxisPlan, Curve, PlannedMove, Profile};
 
 /// Counts the steps of an axis that are due by one cycle after another.
@@ -92,6 +93,10 @@ impl Profile {
     /// travel.
     fn max_position_error(&self) -> f64 {
         let (max_distance, factor) = match (self, self.oscillation()) {
+            (Self::Cut(cut), _) => return cut.base().max_position_error(),
+            (Self::Stretched(stretched), _) => return 2.0 * stretched.base().max_position_error(),
+            (Self::Phases(curve), _) => (curve.max_distance(), 1.0),
+            (Self::Shaped(curve), _) => (curve.max_distance(), 1.0),
             (_, Some(oscillation)) => (2.0 * oscillation.amplitude as f64, 1.0),
             (Self::Points(points), _) => (points.max_distance(), points.max_error_factor()),
             (one_way, _) => (one_way.steps().unsigned_abs() as f64, 1.0),
@@ -109,13 +114,15 @@ struct Elapsed {
     cycle: u64,
     start: CycleTime,
     clock_hz: u32,
+    /// Time of the curve per time, not 1 only for a stretched move.
+    factor: F106,
 }
 
 impl Elapsed {
     /// In s, with the error of an f64.
     fn since_f64(self) -> f64 {
         let cycles = self.cycle.wrapping_sub(self.start.whole) as i64 as f64;
-        (cycles - self.start.part.high) / f64::from(self.clock_hz)
+        (cycles - self.start.part.high) / f64::from(self.clock_hz) * self.factor.high
     }
 
     /// In cycles, in 106 bits; a tie later for a step to the right, which is due at the cycle itself, and a tie earlier for
@@ -141,18 +148,34 @@ impl<'p> CurrentMove<'p> {
     }
 
     fn steps(&mut self, cycle: u64, clock_hz: u32) -> i64 {
-        let elapsed = Elapsed { cycle, start: self.start, clock_hz };
-        self.due = match &self.planned.profile {
+        let elapsed = Elapsed { cycle, start: self.start, clock_hz, factor: 1.0.into() };
+        self.due = self.due_of(&self.planned.profile, elapsed);
+        self.planned.start_steps.saturating_add(self.due)
+    }
+
+    fn due_of(&self, profile: &Profile, elapsed: Elapsed) -> i64 {
+        let clock_hz = elapsed.clock_hz;
+        match profile {
+            Profile::Cut(cut) => self.due_of(cut.base(), elapsed),
+            Profile::Stretched(stretched) => {
+                self.due_of(stretched.base(), Elapsed { factor: stretched.factor(), ..elapsed })
+            }
+            Profile::Phases(curve) => self.numeric_due(curve, elapsed),
+            Profile::SpeedRamps(curve) => self.numeric_due(curve, elapsed),
+            Profile::Shaped(curve) => self.numeric_due(curve, elapsed),
             Profile::TrapezoidTable(table) => self.table_due(table, elapsed),
             Profile::Points(points) => points.due_by(elapsed.since_f64(), self.max_error, |right| {
-                elapsed.since_exact(right) / f64::from(clock_hz)
+                elapsed.since_exact(right) / f64::from(clock_hz) * elapsed.factor
             }),
             Profile::Sine(Sine { oscillation }) | Profile::SineSegments(SineSegments { oscillation, .. }) => {
-                self.oscillation_due(oscillation, elapsed)
+                self.oscillation_due(oscillation, profile, elapsed)
             }
             one_way => self.one_way_due(one_way, elapsed),
-        };
-        self.planned.start_steps.saturating_add(self.due)
+        }
+    }
+
+    fn numeric_due<S: Shape>(&self, curve: &Numeric<S>, elapsed: Elapsed) -> i64 {
+        curve.due_by(elapsed.since_f64(), self.max_error, |k, right| self.is_due(k, right, elapsed))
     }
 
     fn is_due(&self, k: u64, right: bool, elapsed: Elapsed) -> bool {
@@ -175,12 +198,12 @@ impl<'p> CurrentMove<'p> {
     }
 
     /// An oscillation reverses after each half period, so its steps are counted from the last extreme.
-    fn oscillation_due(&self, oscillation: &Oscillation, elapsed: Elapsed) -> i64 {
+    fn oscillation_due(&self, oscillation: &Oscillation, profile: &Profile, elapsed: Elapsed) -> i64 {
         let t = elapsed.since_f64();
         let steps_per_half = 2 * oscillation.amplitude;
         let half = (2.0 * t / oscillation.period_s) as u64;
         let (returns, right) = (half % 2 == 1, oscillation.goes_right(half));
-        let from_start = libm::fabs(self.planned.profile.position(t));
+        let from_start = libm::fabs(profile.position(t));
         let from_extreme = if returns { steps_per_half as f64 - from_start } else { from_start };
         let due = due_near(from_extreme, steps_per_half, self.max_error, |k| {
             self.is_due(half * steps_per_half + k, right, elapsed)
@@ -202,15 +225,4 @@ impl<'p> CurrentMove<'p> {
 
 fn signed(steps: u64, right: bool) -> i64 {
     if right { steps as i64 } else { -(steps as i64) }
-}
-
-/// How many of `count` steps, step k at k - 1/2, are due at a position whose error is at most `max_error`; `is_due` decides
-/// for a step within the error.
-fn due_near(position: f64, count: u64, max_error: f64, is_due: impl Fn(u64) -> bool) -> u64 {
-    let raised = position + 0.5;
-    let k = (raised + 0.5) as u64;
-    if libm::fabs(raised - k as f64) > max_error || k == 0 || k > count {
-        return (raised as u64).min(count);
-    }
-    k - u64::from(!is_due(k))
 }

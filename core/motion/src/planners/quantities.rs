@@ -80,6 +80,29 @@ impl<'s> Quantities<'s> {
         Some(whole)
     }
 
+    /// A distance or a position in whole steps, rounded half up; it may be 0.
+    pub(crate) fn position(&mut self, field: &str, given: &Distance) -> Option<i64> {
+        let step_size = given.step_size(self.mechanics);
+        self.check(field, given.value(), given.unit(), step_size, limits::STEPS)?;
+        given.whole_steps(self.mechanics).ok()
+    }
+
+    /// The speed at the start or the end of a move, from 0 on; `Some(None)` if none is given.
+    pub(crate) fn edge_speed(&mut self, field: &str, given: Option<&Speed>) -> Option<Option<f64>> {
+        let Some(given) = given else { return Some(None) };
+        self.speed_within(field, given, limits::EDGE_SPEED_STEPS_S).map(Some)
+    }
+
+    /// The given acceleration, or another one if none is given.
+    pub(crate) fn acceleration_or(
+        &mut self,
+        field: &str,
+        given: Option<&Acceleration>,
+        other: Option<f64>,
+    ) -> Option<f64> {
+        given.map_or(other, |given| self.acceleration(field, given))
+    }
+
     pub(crate) fn speed(&mut self, field: &str, given: &Speed) -> Option<f64> {
         self.speed_within(field, given, limits::SPEED_STEPS_S)
     }

@@ -198,7 +198,7 @@ mod tests {
     fn an_acceleration_table_has_its_reloads() {
         let table = Move::Trapezoid(Trapezoid {
             distance: Distance::Steps(300.0),
-            start_speed: Speed::StepsPerSecond(250.0),
+            start_speed: Some(Speed::StepsPerSecond(250.0)),
             max_speed: Speed::StepsPerSecond(1200.0),
             max_acceleration: Acceleration::StepsPerSecond2(9000.0),
             ..Trapezoid::default()

@@ -16,7 +16,7 @@ pub(crate) use interpolated::{Interpolated, one_searched_run};
 pub(crate) use number::Number;
 #[cfg(test)]
 pub(crate) use rounding::decide_cycle;
-pub(crate) use rounding::{IsDueBefore, MAX_ERROR, ROUNDING, is_mirrored_due_before};
+pub(crate) use rounding::{IsDueBefore, MAX_ERROR, ROUNDING, due_near, is_mirrored_due_before};
 pub(crate) use run::{Run, Runs, Schedule, Times, one_run};
 pub(crate) use step_loop::MoveSteps;
 pub use step_loop::ScheduledStep;

@@ -57,6 +57,17 @@ pub(crate) fn is_mirrored_due_before(
     }
 }
 
+/// How many of `count` steps, step k at k - 1/2, are due at a position whose error is at most `max_error`; `is_due` decides
+/// for a step within the error.
+pub(crate) fn due_near(position: f64, count: u64, max_error: f64, is_due: impl Fn(u64) -> bool) -> u64 {
+    let raised = position + 0.5;
+    let k = (raised + 0.5) as u64;
+    if libm::fabs(raised - k as f64) > max_error || k == 0 || k > count {
+        return (raised as u64).min(count);
+    }
+    k - u64::from(!is_due(k))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

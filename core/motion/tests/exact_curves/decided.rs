@@ -99,6 +99,7 @@ fn every_step_of_ramps_is_in_its_exact_cycle() {
                 shape,
                 sigmoid_range: parameter,
                 time_constants: parameter,
+                ..Ramps::default()
             };
             let ideal = ideal::ramps((count, duration_s, ramp_s), ideal::shape(shape, parameter));
             check(Move::Ramps(given), ideal);
@@ -120,11 +121,12 @@ fn every_step_of_a_trapezoid_is_in_its_exact_cycle() {
     for (count, start, top, acceleration) in rows {
         let given = Trapezoid {
             distance: steps(count),
-            start_speed: Speed::StepsPerSecond(start),
+            start_speed: Some(Speed::StepsPerSecond(start)),
             max_speed: Speed::StepsPerSecond(top),
             max_acceleration: Acceleration::StepsPerSecond2(acceleration),
             method: TrapezoidMethod::Exact,
             timer_hz: 1,
+            ..Trapezoid::default()
         };
         check(Move::Trapezoid(given), ideal::trapezoid(count, start, top, acceleration));
     }
@@ -147,6 +149,7 @@ fn every_step_of_a_jerk_limited_move_is_in_its_exact_cycle() {
             max_speed: Speed::StepsPerSecond(speed),
             max_acceleration: Acceleration::StepsPerSecond2(acceleration),
             max_jerk: Jerk::StepsPerSecond3(jerk),
+            ..JerkLimited::default()
         };
         check(Move::JerkLimited(given), ideal::jerk_limited(count, speed, acceleration, jerk));
     }
@@ -226,6 +229,7 @@ fn every_step_of_a_sliced_move_is_in_its_exact_cycle() {
             ramp_s,
             method: CosineMethod::Sliced,
             slice_s: 0.1,
+            ..Cosine::default()
         };
         let ideal = |profile: &Profile| by_slices(&given, profile).expect("its slices are known");
         check_planned(&Move::Cosine(given.clone()), 64.0 + 4.0 * 1800.0, ideal);

@@ -296,6 +296,7 @@ fn ramps(shape: RampShape, draw: &mut Draw) -> (Move, Ideal) {
         shape,
         sigmoid_range: parameter,
         time_constants: parameter,
+        ..Ramps::default()
     };
     let ramp_s = if ramp_s < 1e-9 { 0.0 } else { ramp_s };
     (Move::Ramps(given), ideal::ramps((steps, duration_s, ramp_s), ideal::shape(shape, parameter)))
@@ -321,11 +322,12 @@ fn trapezoid(draw: &mut Draw) -> (Move, Ideal) {
     let acceleration = draw.magnitude(top * top / 1e6, top * top * 10.0);
     let given = Trapezoid {
         distance: Distance::Steps(steps as f64),
-        start_speed: Speed::StepsPerSecond(start),
+        start_speed: Some(Speed::StepsPerSecond(start)),
         max_speed: Speed::StepsPerSecond(top),
         max_acceleration: Acceleration::StepsPerSecond2(acceleration),
         method: TrapezoidMethod::Exact,
         timer_hz: 1,
+        ..Trapezoid::default()
     };
     (Move::Trapezoid(given), ideal::trapezoid(steps, start, top, acceleration))
 }
@@ -352,6 +354,7 @@ fn jerk_limited(draw: &mut Draw) -> (Move, Ideal) {
         max_speed: Speed::StepsPerSecond(speed),
         max_acceleration: Acceleration::StepsPerSecond2(acceleration),
         max_jerk: Jerk::StepsPerSecond3(jerk),
+        ..JerkLimited::default()
     };
     (Move::JerkLimited(given), ideal::jerk_limited(steps, speed, acceleration, jerk))
 }
@@ -490,6 +493,7 @@ fn sliced_moves_have_every_step_in_its_cycle() {
             ramp_s: format!("{:.4}", slice_s * ramp as f64).parse().expect("a number"),
             method: CosineMethod::Sliced,
             slice_s,
+            ..Cosine::default()
         })
     };
     compare_planned(14, "sliced", given, |given, profile| {
@@ -525,11 +529,12 @@ fn step_times_of_a_trapezoid_agree_with_its_plan() {
     for (start, top, acceleration) in [(250.0, 4000.0, 9000.0), (0.1, 1e7, 0.3), (1e6, 1.1e6, 7e4)] {
         let given = Trapezoid {
             distance: Distance::Steps(20_001.0),
-            start_speed: Speed::StepsPerSecond(start),
+            start_speed: Some(Speed::StepsPerSecond(start)),
             max_speed: Speed::StepsPerSecond(top),
             max_acceleration: Acceleration::StepsPerSecond2(acceleration),
             method: TrapezoidMethod::Exact,
             timer_hz: 1,
+            ..Trapezoid::default()
         };
         let plan = plan_of(vec![Move::Trapezoid(given)]).expect("a valid axis");
         let ideals = [ideal::trapezoid(20_001, start, top, acceleration)];

@@ -22,11 +22,12 @@ fn plan(moves: Vec<Move>) -> AxisPlan {
 fn a_late_step_of_a_table_is_in_its_exact_cycle() {
     let table = plan(vec![Move::Trapezoid(Trapezoid {
         distance: Distance::Steps(20_000.0),
-        start_speed: Speed::StepsPerSecond(1.0),
+        start_speed: Some(Speed::StepsPerSecond(1.0)),
         max_speed: Speed::StepsPerSecond(2.0),
         max_acceleration: Acceleration::StepsPerSecond2(1.0),
         method: TrapezoidMethod::Table,
         timer_hz: u32::MAX,
+        ..Trapezoid::default()
     })]);
     let step = |k: usize| table.due_steps(1_000_000_000).nth(k - 1).map(|due| due.cycle);
     // (4294967295 + 7426*2147483647)/4294967295 s are 3713999999135.4998 cycles.

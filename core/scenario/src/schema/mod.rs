@@ -29,6 +29,7 @@ mod controller;
 mod describe;
 mod driver;
 mod experiment;
+mod groups;
 mod json_schema;
 mod line;
 mod markdown;

@@ -5,10 +5,11 @@ use crate::schema::{Field, OWN, SINE, SONG, SONOBE, ZHANG, label};
 use alloc::vec::Vec;
 use stepscope_motion::mechanics::{Acceleration, Distance, Jerk, Mechanics, Speed};
 use stepscope_motion::moves::{
-    Axis, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, Move, Point, PointUnit, Points,
-    RampShape, Ramps, ShortMove, Sine, SineSegments, Staircase, Trapezoid, TrapezoidMethod,
+    Axis, AxisLimits, Constant, Cosine, CosineMethod, Dwell, Interpolation, JerkLimited, LimitedProfile,
+    Move, Point, PointUnit, Points, RampShape, Ramps, Retarget, ShortMove, Sine, SineSegments, SpeedTarget,
+    Staircase, Stop, Target, Trapezoid, TrapezoidMethod,
 };
-use stepscope_motion::{limits, motor::Motor};
+use stepscope_motion::{limits, motor::Motor, shaper::InputShaper};
 
 fields! {
     /// An axis runs its moves in order.
@@ -22,6 +23,14 @@ fields! {
             .null_means("torque is not checked")
             .term("Motor", "Motor data for the torque-speed curve: a two-phase hybrid motor on a driver that regulates the current. It does not affect the run. A move that needs more torque than the motor has gets a warning; Study > Torque shows both. The default is the motor of Song, Han, Lu 2021.")
             .from(SONG),
+        /// Limits for lines, way-points and new targets, and the start-stop speed.
+        limits: AxisLimits => label("Limits").only_if_set(),
+        /// Shapes all moves of the axis so that they do not excite a vibration.
+        input_shaper: Option<InputShaper> => label("Input shaper")
+            .null_means("not shaped")
+            .term("Input shaper", "The sum of the curve at several delays, which cancels the vibration of a machine at one frequency. The axis ends later by the longest delay, exactly where it would end without a shaper.")
+            .from(OWN)
+            .only_if_set(),
     }
 }
 
@@ -54,6 +63,8 @@ kinds! {
         Points(Points) = "points" => label("Through points").from(OWN),
         /// One rate without ramps. A motor follows it only up to its start-stop rate.
         Constant(Constant) = "constant" => label("Constant rate"),
+        /// A new target for the previous move, from any of its states. The fastest way there may overshoot and reverse.
+        Retarget(Retarget) = "retarget" => label("New target").from(OWN),
         /// A pause between two moves, with the windings powered.
         Dwell(Dwell) = "dwell" => label("Dwell").from(ZHANG),
     }
@@ -83,6 +94,21 @@ const MAX_SPEED: Field = label("Max speed")
         "Rate of the plateau between the ramps, f_s. Above its pull-out rate a motor loses steps.",
     )
     .from(ZHANG);
+/// A speed along the move, whatever the sign of the distance.
+const EDGE_SPEED: Field = label("Start speed")
+    .unit("steps/s")
+    .number(limits::EDGE_SPEED_STEPS_S)
+    .null_means("the end speed given in the previous move, or 0")
+    .term("Start and end speed", "Speed along the move at its start and its end, positive toward its end. A move without a start speed takes over the end speed given in the previous move, so that moves follow each other without a stop.");
+const END_SPEED: Field = Field { label: "End speed", null_means: "0", ..EDGE_SPEED };
+const DECELERATION: Field = label("Deceleration")
+    .unit("steps/s²")
+    .number(limits::ACCELERATION_STEPS_S2)
+    .null_means("as the acceleration")
+    .term(
+        "Deceleration",
+        "Limit while the speed falls. A motor brakes harder than it accelerates, because friction helps.",
+    );
 /// The plateau of a staircase, whose `max_speed` is the end of its table.
 const TOP_SPEED: Field = Field { label: "Top speed", ..MAX_SPEED };
 const MAX_ACCELERATION: Field = label("Max acceleration")
@@ -114,17 +140,39 @@ const PERIODS: Field = label("Periods")
     .term("Periods", "Number of oscillations. The spectrum uses whole periods.")
     .from(SINE);
 
+const LIMIT_SPEED: Field = label("Max speed").unit("steps/s").number(limits::SPEED_STEPS_S);
+const LIMIT_ACCELERATION: Field =
+    label("Max acceleration").unit("steps/s²").number(limits::ACCELERATION_STEPS_S2);
+const LIMIT_DECELERATION: Field = Field { label: "Max deceleration", ..LIMIT_ACCELERATION };
+const LIMIT_JERK: Field = label("Max jerk").unit("steps/s³").number(limits::JERK_STEPS_S3);
+
+kinds! {
+    /// The new target of an axis.
+    Target {
+        /// A position from the start of the motion, where the axis comes to rest; rounded to a whole step.
+        Position(Distance) = "position" => label("Position"),
+        /// A speed.
+        Speed(SpeedTarget) = "speed" => label("Speed"),
+        /// The fastest stop.
+        Stop(Stop) = "stop" => label("Stop"),
+    }
+}
+
 fields! {
     /// Constant acceleration: with the table of whole rates and timer reloads of Sonobe 2011, or exact.
     Trapezoid {
         /// Negative values move left.
         distance: Distance => DISTANCE,
-        /// Rate of the first step.
-        start_speed: Speed => START_SPEED,
+        /// Speed at the start.
+        start_speed: Option<Speed> => START_SPEED.null_means("the end speed given in the previous move, or 0; not for a table"),
+        /// Speed at the end; not for a table.
+        end_speed: Option<Speed> => END_SPEED.null_means("a given start speed, or 0").only_if_set(),
         /// Rate of the plateau, at least the start speed. Short moves do not reach it.
         max_speed: Speed => MAX_SPEED.number(limits::SPEED_STEPS_S),
-        /// Also the deceleration.
+        /// Also the deceleration, unless that is given.
         max_acceleration: Acceleration => MAX_ACCELERATION,
+        /// Change of speed per second while the speed falls; not for a table.
+        deceleration: Option<Acceleration> => DECELERATION.only_if_set(),
         /// How step times are computed.
         method: TrapezoidMethod => label("Step times")
             .term("Step times", "A small controller stores one pulse rate per step and reloads a timer with clock / rate. Both are whole numbers, so each step is slightly early or late. Exact step times have no such error.")
@@ -180,6 +228,10 @@ fields! {
             .term("Slice", "Time T_S during which the rate is constant, 1 ms in Song 2021. The rate at the start of a slice determines its number of steps.")
             .from(SONG)
             .when("method", "sliced"),
+        /// Speed at the start; not for slices.
+        start_speed: Option<Speed> => EDGE_SPEED.only_if_set(),
+        /// Speed at the end; not for slices.
+        end_speed: Option<Speed> => END_SPEED.only_if_set(),
     }
     /// A given number of steps in a given time. Deceleration mirrors acceleration.
     Ramps {
@@ -204,6 +256,10 @@ fields! {
             .number(limits::RAMP_PARAMETER)
             .term("Time constants", "Time constants of the exponential per ramp. A higher number makes the ramp steeper at the start and flatter at the end; a low number makes it nearly straight.")
             .when("shape", "exponential"),
+        /// Speed at the start.
+        start_speed: Option<Speed> => EDGE_SPEED.only_if_set(),
+        /// Speed at the end.
+        end_speed: Option<Speed> => END_SPEED.only_if_set(),
     }
     /// From the right extreme to the left one and back.
     SineSegments {
@@ -229,7 +285,7 @@ fields! {
         /// Number of whole periods.
         periods: u32 => PERIODS,
     }
-    /// From rest to rest, as fast as the three limits allow. A short move omits its plateau, its constant
+    /// As fast as the limits allow, from rest to rest or between two speeds. A short move omits its plateau, its constant
     /// acceleration, or both.
     JerkLimited {
         /// Negative values move left.
@@ -239,7 +295,7 @@ fields! {
             .unit("steps/s")
             .number(limits::SPEED_STEPS_S)
             .term("Max speed", "Rate of the plateau. Short moves do not reach it."),
-        /// Also the deceleration.
+        /// Also the deceleration, unless that is given.
         max_acceleration: Acceleration => label("Max acceleration")
             .unit("steps/s²")
             .number(limits::ACCELERATION_STEPS_S2)
@@ -249,6 +305,60 @@ fields! {
             .unit("steps/s³")
             .number(limits::JERK_STEPS_S3)
             .term("Max jerk", "Limit of the change of acceleration per second. An infinite jerk makes a trapezoid."),
+        /// Limit while the speed falls.
+        max_deceleration: Option<Acceleration> => Field { label: "Max deceleration", ..DECELERATION }.only_if_set(),
+        /// Speed at the start.
+        start_speed: Option<Speed> => EDGE_SPEED.only_if_set(),
+        /// Speed at the end.
+        end_speed: Option<Speed> => END_SPEED.only_if_set(),
+    }
+    /// Cuts the previous move of the axis and goes on from its position, speed and acceleration, as fast as the limits
+    /// allow. The move that is cut must not follow a table.
+    Retarget {
+        /// Time of the cut after the start of the previous move, up to its duration.
+        at_s: f64 => label("Cut at")
+            .unit("s")
+            .number(limits::CUT_S)
+            .term("Cut at", "Time after the start of the previous move at which the new target takes over."),
+        /// Where the axis goes.
+        target: Target => label("Target"),
+        /// Limited jerk, or jumps of the acceleration.
+        profile: LimitedProfile => label("Profile")
+            .term("Profile", "Jerk-limited: the acceleration changes gradually. Trapezoid: the acceleration jumps, so the move is shorter."),
+        /// Maximum speed.
+        max_speed: Option<Speed> => LIMIT_SPEED.null_means("the axis' `limits`"),
+        /// Limit while the speed rises.
+        max_acceleration: Option<Acceleration> => LIMIT_ACCELERATION.null_means("the axis' `limits`"),
+        /// Limit while the speed falls.
+        max_deceleration: Option<Acceleration> => LIMIT_DECELERATION.null_means("the axis' `limits`, or the acceleration"),
+        /// Not for a trapezoid.
+        max_jerk: Option<Jerk> => LIMIT_JERK.null_means("the axis' `limits`"),
+    }
+    /// A speed, which is then held.
+    SpeedTarget {
+        /// Negative values move left.
+        speed: Speed => label("Speed").unit("steps/s").number(limits::SIGNED_SPEED_STEPS_S),
+        /// Time at this speed.
+        hold_s: f64 => label("Hold").unit("s").number(limits::PAUSE_S),
+    }
+    /// The fastest stop, wherever it ends.
+    Stop {}
+    /// Limits of the axis, for moves that have none of their own.
+    AxisLimits {
+        /// Maximum speed.
+        max_speed: Speed => LIMIT_SPEED,
+        /// Limit while the speed rises.
+        max_acceleration: Acceleration => LIMIT_ACCELERATION,
+        /// Limit while the speed falls.
+        max_deceleration: Option<Acceleration> => LIMIT_DECELERATION.null_means("as the acceleration"),
+        /// Limit of the change of acceleration per second.
+        max_jerk: Jerk => LIMIT_JERK,
+        /// Maximum jump of the speed at the start, between moves and at the end.
+        start_stop_speed: Option<Speed> => label("Start-stop speed")
+            .unit("steps/s")
+            .number(limits::EDGE_SPEED_STEPS_S)
+            .null_means("not checked")
+            .term("Start-stop speed", "A motor can start and stop at once up to this rate. A larger jump of the speed is refused."),
     }
     /// Both columns are relative to the first point. Times rise by at least 1 ns; positions are within 10^9 steps.
     /// `"straight"` is the polyline itself, whose speed jumps at each point. `"smooth"` uses cubics (Steffen 1990) from
@@ -287,6 +397,10 @@ words! {
     TrapezoidMethod {
         Table = "table", "table and timer": "whole pulse rates, one per step, and whole timer reloads (Sonobe 2011)";
         Exact = "exact", "exact": "step k where the ideal curve crosses k - 1/2";
+    }
+    LimitedProfile {
+        JerkLimited = "jerk_limited", "jerk-limited": "limited jerk";
+        Trapezoid = "trapezoid", "trapezoid": "jumps of the acceleration";
     }
     ShortMove {
         Document = "at_start_speed", "at start speed": "run the whole move at the start speed (Zhang 2012)";

@@ -5,7 +5,7 @@ use crate::schema::{OWN, PATENT, SONOBE, label};
 use crate::{END_OF_TIME, Hex, SegmentLists};
 use crate::{StandAlone, schema::ZHANG};
 use alloc::{vec, vec::Vec};
-use stepscope_motion::moves::Axis;
+use stepscope_motion::{AxisList, groups::Group, limits, moves::Axis};
 use stepscope_peripheral::units::Instant;
 use stepscope_peripheral::wire::{Schedule, frame::encode_frame};
 
@@ -45,6 +45,20 @@ settings! {
         pub engine: MotionEngine = MotionEngine::Ticks => label("Step generation")
             .term("Step generation", "Ticks: the host sends the number of steps of each tick (RU 2704486). Step table: a timer interrupt of the controller runs the move without a host, from a table of intervals (Sonobe 2011, Zhang 2012, Song 2021).")
             .from(PATENT),
+        /// Moves of several axes that start and end together, one group after another, after the axes' own moves. With
+        /// groups an axis may have no moves.
+        pub groups: Vec<Group> = Vec::new() => label("Groups")
+            .length(limits::GROUPS, "groups")
+            .term("Group", "Moves of several axes that start in the same instant and end in the same instant. A group starts when the last axis is at rest.")
+            .from(OWN)
+            .only_if_set(),
+    }
+}
+
+impl Motion {
+    /// Axes and groups with their path in a scenario.
+    pub fn axis_list(&self) -> AxisList<'_> {
+        AxisList { path: "source.motion.axes".into(), axes: &self.axes, groups: &self.groups }
     }
 }
 

@@ -146,8 +146,14 @@ fn refuses_a_rate_above_the_maximum_by_more_than_a_rounding() {
     let plan = |steps: f64, slice_s: f64| {
         let distance = Distance::Steps(steps);
         let duration_s = 10.0 * slice_s;
-        let moved =
-            moves::Cosine { distance, duration_s, ramp_s: 0.0, method: CosineMethod::Sliced, slice_s };
+        let moved = moves::Cosine {
+            distance,
+            duration_s,
+            ramp_s: 0.0,
+            method: CosineMethod::Sliced,
+            slice_s,
+            ..moves::Cosine::default()
+        };
         plan_axis(&Axis { moves: vec![Move::Cosine(moved)], ..Axis::default() }, "x")
     };
     let plan_at_the_highest = plan(1e7, 0.1).expect("at the highest rate");
