@@ -107,7 +107,10 @@ fn a_finger_places_drags_and_removes_both_cursors() -> Result<()> {
                 page.until(&format!("document.querySelector('{css}').ariaValueText !== 'not set'")).await?;
                 cycles.push(cycle(&page, &css).await?.context("it is set")?);
                 let placed = handle(&page, &css).await?;
-                ensure!(placed.width >= 44.0 && (placed.x - to).abs() <= 44.0, "{placed:?} is not at {to}");
+                ensure!(
+                    placed.width >= 44.0 && placed.height >= 44.0 && (placed.x - to).abs() <= 44.0,
+                    "{placed:?} is not at {to}"
+                );
             }
             ensure!(cycles[0] < cycles[1], "{tab}: {cycles:?}");
             page.picture(&format!("cursors-{tab}")).await?;
