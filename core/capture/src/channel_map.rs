@@ -18,6 +18,7 @@
 //! ```
 
 use crate::capture::{Capture, Channel};
+use crate::short_sort::ShortSort as _;
 use core::fmt;
 use stepscope_peripheral::signal::{self, Levels, MAX_CHANNELS};
 
@@ -191,7 +192,7 @@ impl core::error::Error for MapError {}
 
 impl ChannelMap {
     pub(crate) fn from_entries(mut entries: Vec<Entry>) -> Self {
-        entries.sort_unstable_by_key(|entry| match Input::from_bit(entry.bit) {
+        entries.sort_short_by_key(|entry| match Input::from_bit(entry.bit) {
             Some((input, motor)) => (0, Some(input), motor),
             None => (1, None, entry.bit),
         });

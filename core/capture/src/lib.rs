@@ -30,6 +30,7 @@ mod proposal;
 pub mod read;
 pub mod recorded;
 pub mod samples;
+mod short_sort;
 mod spacing;
 pub mod timebase;
 pub mod uart;

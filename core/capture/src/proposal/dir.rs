@@ -3,6 +3,7 @@
 use super::timing::{are_close_to_pulses, has_pulses_between, total_distance};
 use super::{behavior::MIN_STEPS, draft::Draft};
 use crate::names::shared_words;
+use crate::short_sort::ShortSort as _;
 use std::collections::BTreeSet;
 
 /// Minimum share of a candidate's intervals that contain pulses, in percent, if it changes during pulses.
@@ -48,7 +49,7 @@ impl Draft<'_> {
         let mut candidates: Vec<Candidate> =
             channels.into_iter().flat_map(|channel| self.candidates(channel, &motors)).collect();
         let has_one_each = mark_out_of_order(&mut candidates, &motors);
-        candidates.sort_unstable();
+        candidates.sort_short_by_key(|candidate| *candidate);
         let first = candidates.first().map(|candidate| candidate.channel);
         let is_single = candidates.iter().all(|candidate| Some(candidate.channel) == first);
         let mut used = Vec::new();
@@ -148,7 +149,7 @@ fn mark_out_of_order(candidates: &mut [Candidate], motors: &[MotorEdges]) -> boo
         return false;
     }
     let mut steps: Vec<usize> = motors.iter().map(|motor| motor.channel).collect();
-    steps.sort_unstable();
+    steps.sort_short_by_key(|channel| *channel);
     for Candidate { fit, channel, motor } in candidates {
         let step = motors.iter().find(|other| other.motor == *motor).map(|motor| motor.channel);
         let own = steps.iter().position(|other| Some(*other) == step);

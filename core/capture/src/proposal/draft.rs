@@ -4,6 +4,7 @@ use super::behavior::{Behavior, behaviors};
 use super::motor::Motor;
 use crate::capture::{Capture, Change};
 use crate::names::{Kind, Meaning, SignalName, are_indexed};
+use crate::short_sort::ShortSort as _;
 use crate::{changes::MAX_INSPECTED, channel_map::Entry};
 
 pub(super) struct Draft<'a> {
@@ -42,7 +43,7 @@ impl<'a> Draft<'a> {
                 found.push((channel, named.clone()));
             }
         }
-        found.sort_by_key(|(channel, named)| (named.is_negative, *channel));
+        found.sort_short_by_key(|(channel, named)| (named.is_negative, *channel));
         found
     }
 
@@ -119,7 +120,7 @@ fn renumber_pins(meanings: &mut [Meaning]) {
     };
     let (steps, dirs) = (numbers(Kind::Step), numbers(Kind::Dir));
     let mut all: Vec<&str> = steps.iter().chain(&dirs).copied().collect();
-    all.sort_unstable();
+    all.sort_short_by_key(|axis| *axis);
     let is_number = |axis: &&str| !axis.is_empty() && axis.bytes().all(|byte| byte.is_ascii_digit());
     let are_pins = steps.len() == dirs.len()
         && all.iter().all(is_number)

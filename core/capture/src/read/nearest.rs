@@ -2,6 +2,7 @@
 
 use super::fields::{fields, separator};
 use super::{clock::Stamp, decimal::Decimal, hex, levels::Layout, recorder::quoted, row};
+use crate::short_sort::ShortSort as _;
 
 const MAX_NAMED: usize = 3;
 
@@ -26,7 +27,7 @@ pub(super) fn nearest(lines: &[&[u8]]) -> String {
         ),
     ];
     let mut formats: Vec<(usize, String)> = formats.into();
-    formats.sort_by_key(|(share, _)| core::cmp::Reverse(*share));
+    formats.sort_short_by_key(|(share, _)| core::cmp::Reverse(*share));
     let named: Vec<String> = formats.into_iter().take(MAX_NAMED).map(|(_, format)| format).collect();
     format!("the closest formats are {}", named.join("; "))
 }

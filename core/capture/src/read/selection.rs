@@ -1,6 +1,7 @@
 //! Selects channels of a file that has too many: requested ones, then those with recognized names, then the others.
 
 use super::recorder::Recorder;
+use crate::short_sort::ShortSort as _;
 use crate::{capture::MAX_CHANNELS, names::Meaning};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -60,7 +61,7 @@ impl<T> Selection<T> {
     }
 
     pub(super) fn finish(&mut self, recorder: &mut Recorder, mut each: impl FnMut(T, u8)) {
-        self.best.sort_unstable_by_key(|candidate| candidate.order);
+        self.best.sort_short_by_key(|candidate| candidate.order);
         for Candidate { name, payload, .. } in self.best.drain(..) {
             if let Some(bit) = recorder.channel(&name) {
                 each(payload, bit);

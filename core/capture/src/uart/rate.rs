@@ -1,6 +1,7 @@
 //! Estimates a line's bit rate: the bit time that fits most words and edges.
 
 use super::{Edge, Fault, FittedWord, Format, fit_words};
+use crate::short_sort::ShortSort as _;
 use std::collections::BTreeSet;
 
 const USUAL: [u32; 27] = [
@@ -345,7 +346,7 @@ fn by_distance(fitting: &[(Quality, u32)], hz: f64) -> Vec<u32> {
             ((100.0 * distance(hz, found.bit, *rate) + 0.5) as u32, RARE_RATES.contains(rate), *rate)
         })
         .collect();
-    rates.sort_unstable();
+    rates.sort_short_by_key(|rate| *rate);
     rates.into_iter().map(|(.., rate)| rate).collect()
 }
 
