@@ -201,7 +201,7 @@ pub(crate) const PAGES: &[Page] = &[
             "the list, a file of a check or the command line is invalid",
             [
                 r#"echo '{"checks": [{"run": "framed-link"}]}' | stepscope check -"#,
-                r#"echo '{"checks": [{"run": "framed-link"}]}' | stepscope check - --junit junit.xml --summary summary.md"#,
+                r#"echo '{"checks": [{"run": "framed-link"}]}' | stepscope check - --junit junit.xml"#,
             ],
         )
     },

@@ -67,8 +67,9 @@ fn every_example_runs_as_printed_in_an_empty_folder() {
             let output = shell(&line, &folder).output().expect("sh starts");
             assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
             let is_written = fs::read_dir(&folder).expect("a folder").count() > 0;
-            let writes =
-                [" -o ", " --vcd ", " --csv ", " --dir ", " > "].iter().any(|word| line.contains(word));
+            let writes = [" -o ", " --vcd ", " --csv ", " --dir ", " --junit ", " > "]
+                .iter()
+                .any(|word| line.contains(word));
             assert_eq!(is_written, writes, "{line}");
         }
     }

@@ -155,6 +155,8 @@ fn archive(name: &str, packed: &[Packed]) -> Result<Vec<u8>> {
         header.set_size(bytes.len() as u64);
         header.set_mode(if *is_program { 0o755 } else { 0o644 });
         header.set_mtime(0);
+        header.set_uid(0);
+        header.set_gid(0);
         tar.append_data(&mut header, format!("{name}/{path}"), &**bytes)
             .with_context(|| format!("{path} can't be packed"))?;
     }

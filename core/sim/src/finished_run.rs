@@ -207,11 +207,10 @@ mod tests {
             assert_eq!(found.expect(expected).to_string(), expected);
         };
         check(run(&scenario(r#"{"bus":{"slots":0}}"#)).err(), "bus.slots: 0 is out of range; use 1 to 127");
-        check(
-            run(&scenario(r#"{"source":{"standalone":[{"inputs":[{"cycle":320000,"input":"jog_plus"}]}]}}"#))
-                .err(),
-            "run_cycles: a jog button stays pressed, so the run has no end; set run_cycles, or release the button in inputs",
-        );
+        let jog = r#"{"source":{"standalone":[{"debounce_cycles":1000,"memory":{"byte_write_cycles":10,"hold_up_cycles":1000},
+            "inputs":[{"cycle":320000,"input":"jog_plus"}]}]}}"#;
+        let endless = "run_cycles: a jog button stays pressed, so the run has no end; set run_cycles, or release the button in inputs";
+        check(run(&scenario(jog)).err(), endless);
         check(step_times(&scenario("{}"), 1).err(), "axis: 1 is out of range; use 0");
         check(
             step_times(&scenario(r#"{"source":{"packets":{"packets":["83"]}}}"#), 0).err(),
