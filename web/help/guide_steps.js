@@ -141,9 +141,9 @@ function createGuide({ dispatch, now }) {
       Math.max(GAP_PX, Math.min(at, max - GAP_PX));
     // Left of the views, right of the form, or below the header.
     const left = box.width > clientWidth / 3 ? box.left - width - GAP_PX : box.right + GAP_PX;
-    const isTall = box.height > height / 2;
-    panel.style.left = `${within(isTall ? left : box.left, clientWidth - width)}px`;
-    panel.style.top = `${within(isTall ? box.top : below, clientHeight - height)}px`;
+    const tall = box.height > height / 2;
+    panel.style.left = `${within(tall ? left : box.left, clientWidth - width)}px`;
+    panel.style.top = `${within(tall ? box.top : below, clientHeight - height)}px`;
   }
 
   function end() {
