@@ -70,7 +70,7 @@ fields! {
         /// Positions from the start of the motion, one for each axis; rounded to whole steps.
         positions: Vec<Distance> => label("Positions").range_text("one for each axis"),
         /// Speeds at the point, one for each axis, negative to the left; null is a suitable speed.
-        speeds: Option<Vec<Option<Speed>>> => label("Speeds").range_text("one for each axis, or null").null_means("suitable speeds"),
+        speeds: Option<Vec<Option<Speed>>> => label("Speeds").range_text("one for each axis").null_means("suitable speeds"),
     }
     /// The vibration of the machine.
     ShaperSettings {

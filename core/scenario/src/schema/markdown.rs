@@ -84,7 +84,7 @@ fn field_row(out: &mut String, field: &Field, default: &dyn ToParts) {
     let range = range_of(field);
     let mut allowed: Vec<&str> = [unit, &range].into_iter().filter(|text| !text.is_empty()).collect();
     match field.ty {
-        Type::Optional(Type::Group(_)) => allowed.push("`null`, or as below"),
+        Type::Optional(Type::Group(group)) if !is_quantity(group) => allowed.push("`null`, or as below"),
         Type::Optional(_) => allowed.push("or `null`"),
         _ => {}
     }
@@ -113,7 +113,9 @@ fn field_row(out: &mut String, field: &Field, default: &dyn ToParts) {
 /// Groups with their own section are left out.
 fn default_of(ty: &Type, default: &dyn ToParts) -> String {
     match (ty, default.parts()) {
-        (Type::Group(group), Parts::Kind(name, value)) if is_quantity(group) => {
+        (Type::Group(group) | Type::Optional(Type::Group(group)), Parts::Kind(name, value))
+            if is_quantity(group) =>
+        {
             let unit = group.fields.iter().find(|kind| kind.name == name).map_or("", |kind| kind.label);
             format!("{} {unit}", value_text(value))
         }
@@ -215,7 +217,7 @@ fn is_quantity(group: &Group) -> bool {
 
 fn quantity_of(ty: &Type) -> Option<&'static Group> {
     match ty {
-        Type::Group(group) if is_quantity(group) => Some(group),
+        Type::Group(group) | Type::Optional(Type::Group(group)) if is_quantity(group) => Some(group),
         _ => None,
     }
 }

@@ -16,8 +16,8 @@ fields! {
     Axis {
         /// Travel per step.
         mechanics: Mechanics => label("Mechanics"),
-        /// Moves, in order.
-        moves: Vec<Move> => label("Moves").length(limits::MOVES, "moves"),
+        /// Moves, in order; at least one without groups.
+        moves: Vec<Move> => label("Moves").length(0..=*limits::MOVES.end(), "moves"),
         /// Motor, supply and load.
         motor: Option<Motor> => label("Motor")
             .null_means("torque is not checked")
@@ -341,7 +341,7 @@ fields! {
         /// Time at this speed.
         hold_s: f64 => label("Hold").unit("s").number(limits::PAUSE_S),
     }
-    /// The fastest stop, wherever it ends.
+    /// The fastest stop, wherever it ends. It has no fields.
     Stop {}
     /// Limits of the axis, for moves that have none of their own.
     AxisLimits {
