@@ -1,24 +1,26 @@
 //! `stepscope tables`: step times of a scenario's axes as tables for a firmware.
 
 mod export;
+mod options;
 
+use self::options::{FormName, Search, WindowName, Written};
 use crate::failure::{Failure, Numbered};
 use crate::options::{Json, Out};
 use crate::quantity::{Microseconds, whole};
 use crate::{json::Tables, output, run_recording, scenarios, steps::steps_of_table};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde_json::json;
 use std::io::{self, Write};
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 use stepscope_core::{
     inspect::export::{
-        source_code::{Language, WALKER, check_name},
+        source_code::{WALKER, check_name},
         step_tables::{scheduled, tolerance_cycles},
     },
     motion::{
         AxisPlan, Cause, ScheduledStep, plan_lists, round_half_up,
-        step_tables::{EntryFormat, Form, Side, Stored, Tolerance, stored, stored_steps},
+        step_tables::{EntryFormat, Form, Stored, Tolerance, stored, stored_steps},
     },
     peripheral::{config::Config, segment::PulseTimes, trace::steps},
     scenario::{Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
@@ -42,24 +44,24 @@ pub(crate) struct Arguments {
     /// Form of the table (default: exact; for a summary, all)
     #[arg(long, value_enum)]
     form: Option<FormName>,
-    /// Maximum error of a step in a compressed table, in us
-    #[arg(long, value_name = "US", default_value = "25")]
-    error_us: Microseconds,
+    /// Maximum error of a step in a compressed table, in us (default: 25)
+    #[arg(long, value_name = "US")]
+    error_us: Option<Microseconds>,
     /// Maximum error of a step in a compressed table, as 1/N of a step interval (Klipper: 2)
     ///
     /// Applies in addition to --error-us. The interval is the shorter of the two next to the step; with --window early,
     /// the one before it.
     #[arg(long, value_name = "N", value_parser = whole::<NonZeroU32>(1..=u32::MAX.into()))]
     interval_part: Option<NonZeroU32>,
-    /// Allowed direction of the error in a compressed table
-    #[arg(long, value_enum, default_value = "both")]
-    window: WindowName,
-    /// Search method of a compressed table
+    /// Allowed direction of the error in a compressed table (default: both)
+    #[arg(long, value_enum)]
+    window: Option<WindowName>,
+    /// Search method of a compressed table (default: fewest)
     ///
     /// With q8 and q16, fewest differs from quick only if the maximum error is below 2048 units of the format (q8:
     /// 8 cycles, q16: 1/32 cycle).
-    #[arg(long, value_enum, default_value = "fewest")]
-    search: Search,
+    #[arg(long, value_enum)]
+    search: Option<Search>,
     /// Format of an entry: q16, q8, ticks or klipper (default: ticks; for a summary, all)
     ///
     /// q16 has 20 bytes and a resolution of 1/65536 cycle, q8 has 8 bytes and 1/256 cycle, ticks has 8 bytes and whole
@@ -75,22 +77,21 @@ pub(crate) struct Arguments {
     /// Name of the table in source code (default: axis_K)
     ///
     /// Use up to 32 lower-case letters, digits and underscores after a first letter. Keywords of C, C++ and avr-libc are
-    /// refused, and names that begin with a prefix that C reserves: is, to, str, mem, wcs or e and a letter, e and a
-    /// digit, int, uint, sig, lc_, fe_, pri, scn, atomic_, memory_, cnd_, mtx_, thrd_ or tss_. With --axis all the tables
-    /// are NAME_0, NAME_1 and so on.
+    /// refused, and names that begin with stepscope. With --axis all the tables are NAME_0, NAME_1 and so on.
     #[arg(long, value_parser = table_name, conflicts_with = "json")]
     name: Option<String>,
     /// Also write stepscope_walk.h, which tables in C include, next to --out
     #[arg(long)]
     with_walker: bool,
     /// Write only stepscope_walk.h
-    #[arg(long, conflicts_with_all = ["scenario", "steps", "with_walker", "check", "json", "name"])]
+    #[arg(long, conflicts_with_all = ["scenario", "steps", "with_walker", "check", "json", "name", "form",
+        "entries", "error_us", "interval_part", "window", "search", "format", "axis"])]
     walker: bool,
     /// Compare a table with the plan, step by step; exit code 3 if it differs
     ///
     /// FILE is a table in C; without FILE, the table that --format c would write is compared. Each step must have its
-    /// direction, and its time within the error that the table states. The tables of a file belong to axes 0, 1 and so on,
-    /// unless --axis selects one. Nothing else is written.
+    /// direction, and its time within the error that the table states, and the shortest and longest event must be as stated.
+    /// The first table of a file belongs to --axis, by default that of the command in its header. Nothing else is written.
     #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["json", "with_walker"])]
     check: Option<Option<PathBuf>>,
     #[command(flatten)]
@@ -99,74 +100,12 @@ pub(crate) struct Arguments {
     out: Out,
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum WindowName {
-    /// Early and late
-    Both,
-    /// Only early, as in Klipper
-    Early,
-}
+/// Maximum error of a compressed table by default, in us.
+const ERROR_US: f64 = 25.0;
 
-impl WindowName {
-    const fn side(self) -> Side {
-        match self {
-            Self::Both => Side::Both,
-            Self::Early => Side::Early,
-        }
-    }
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Search {
-    /// Fewest entries; if this cannot be proven, column surplus of the summary is an upper bound on the excess
-    Fewest,
-    /// Hundreds of times faster: each entry is the longest one that ends near the middle of a window
-    Quick,
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum FormName {
-    /// Each step in its exact cycle
-    Exact,
-    /// The table described by the paper of the motion
-    Document,
-    /// Few entries, within a maximum error
-    Compressed,
-}
-
-impl FormName {
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Document => "document",
-            Self::Compressed => "compressed",
-        }
-    }
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Written {
-    /// C99
-    C,
-    /// C for avr-gcc, in program memory
-    Avr,
-    /// Rust
-    Rust,
-    /// Comma-separated values
-    Csv,
-    /// Size and errors of each form
-    Summary,
-}
-
-impl Written {
-    const fn language(self) -> Option<Language> {
-        match self {
-            Self::C => Some(Language::C),
-            Self::Avr => Some(Language::Avr),
-            Self::Rust => Some(Language::Rust),
-            Self::Csv => Some(Language::Csv),
-            Self::Summary => None,
-        }
+impl Arguments {
+    fn error_us(&self) -> f64 {
+        self.error_us.map_or(ERROR_US, Microseconds::get)
     }
 }
 
@@ -223,9 +162,10 @@ impl Axes {
         let clock_hz = scenario.clock_hz;
         let config = Config::of_segments(clock_hz, &scenario.bus, &scenario.line.serial());
         let pulse = PulseTimes::from(&config.map_err(of_config).map_err(wrong)?);
-        let cycles = tolerance_cycles(arguments.error_us.get(), clock_hz);
-        let (interval_part, search) = (arguments.interval_part, arguments.search);
-        let tolerance = Tolerance { cycles, interval_part, side: arguments.window.side() };
+        let cycles = tolerance_cycles(arguments.error_us(), clock_hz);
+        let (interval_part, search) = (arguments.interval_part, arguments.search.unwrap_or_default());
+        let tolerance =
+            Tolerance { cycles, interval_part, side: arguments.window.unwrap_or_default().side() };
         let listed = arguments.steps.as_deref().map(scenarios::text).transpose()?;
         let (path, axes) = if let (Some(list), Some(text)) = (&arguments.steps, &listed) {
             let steps = steps_of_table(text, clock_hz).map_err(|why| Failure::Invalid(list.clone(), why))?;
@@ -287,6 +227,7 @@ pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.walker {
         return output::write_new(&arguments.out.out, |out| out.write_all(WALKER.as_bytes()));
     }
+    options::check(arguments)?;
     let axes = Axes::new(arguments)?;
     let count = axes.axes.len();
     let is_summary = arguments.format == Written::Summary && arguments.check.is_none();

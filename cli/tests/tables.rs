@@ -249,10 +249,25 @@ fn a_check_compares_a_table_with_its_plan() {
     let (code, text, err) = stepscope(&["tables", "-", "--check", &out], MOTION);
     assert_eq!(code, Some(3), "{text}");
     assert!(text.lines().nth(1).is_some_and(|row| row.contains("the table states at most 0")), "{text}");
-    assert!(err.contains("1 of 2 tables differ from the plan"), "{err}");
+    assert!(err.contains("1 of 2 tables differs from the plan"), "{err}");
+    // The axis is that of the command in the header, and the stated times are compared, too.
+    let options = ["tables", "-", "--format", "c", "--axis", "1", "--out", &out];
+    assert_eq!(stepscope(&options, MOTION).0, Some(0));
+    let (code, text, _) = stepscope(&["tables", "-", "--check", &out], MOTION);
+    assert!(code == Some(0) && text.starts_with("axis_1, axis 1: passed: 6400 steps"), "{text}");
+    let table = fs::read_to_string(&out).expect("a file");
+    fs::write(&out, table.replace("AXIS_1_MAX_CYCLES ", "AXIS_1_MAX_CYCLES 9UL\n//")).expect("a file");
+    let (code, text, err) = stepscope(&["tables", "-", "--check", &out], MOTION);
+    assert!(code == Some(3) && text.contains("failed: MAX_CYCLES is 9, and "), "{text}");
+    assert!(err.contains("1 of 1 table differs from the plan"), "{err}");
+    let options = ["tables", "-", "--format", "avr", "--form", "compressed", "--axis", "all", "--out", &out];
+    assert_eq!(stepscope(&options, MOTION).0, Some(0));
     for (options, scenario, why) in [
         (&["--check", &out][..], "{}", "2 tables from axis 0 on, but the scenario has 1"),
         (&["--check", "/dev/null"], MOTION, "no table; use a file of stepscope tables"),
+        (&["--check", &out, "--entries", "q8"], MOTION, "--entries: has no effect on the table of a file"),
+        (&["--check", &out, "--search", "quick"], MOTION, "--search: has no effect on the table of a file"),
+        (&["--check", &out, "--format", "rust"], MOTION, "--format: has no effect on the table of a file"),
     ] {
         let (code, _, err) = stepscope(&[&["tables", "-"], options].concat(), scenario);
         assert!(code == Some(2) && err.contains(why), "{err}");
@@ -281,13 +296,12 @@ fn warns_of_arrays_too_large_for_the_compiler() {
 }
 
 #[test]
-fn rejects_names_reserved_in_c() {
+fn rejects_keywords_and_names_of_the_walker() {
     for (name, why) in [
         ("turn", ""),
         ("is_a", ""),
-        ("string_1", "begin with \"str\""),
-        ("uint8_t", "begin with \"uint\""),
-        ("e1_axis", "begin with \"e\""),
+        ("extruder", ""),
+        ("stepscope_q8", "begin with \"stepscope\""),
         ("int", "\"int\" is a keyword of C, C++ or avr-libc; use another name"),
         ("sei", "\"sei\" is a keyword"),
         ("Turn", "not a valid name; use up to 32 lower-case letters"),
@@ -320,6 +334,28 @@ fn explains_why_there_is_no_table() {
         assert_eq!((code, out.as_str()), (Some(2), ""), "{options:?}: {err}");
         assert!(err.contains(part), "{options:?}: {err}");
     }
+}
+
+#[test]
+fn refuses_options_without_effect() {
+    let rows: [(&[&str], &str); 9] = [
+        (&["--form", "exact", "--error-us", "9"], "--error-us: only a compressed table"),
+        (&["--format", "c", "--interval-part", "2"], "--interval-part: only a compressed table"),
+        (&["--form", "document", "--window", "early"], "--window: only a compressed table"),
+        (&["--check", "--search", "quick"], "--search: only a compressed table"),
+        (&["--check", "--format", "rust"], "--format: only tables in C can be checked; use --format c"),
+        (&["--format", "csv", "--check"], "--format: only tables in C can be checked"),
+        (&["--name", "turn"], "--name: only source code has names; use --format c, avr or rust"),
+        (&["--name", "turn", "--format", "csv"], "--name: only source code has names"),
+        (&["--format", "c", "--form", "compressed", "--error-us", "25", "--search", "fewest"], ""),
+    ];
+    for (options, why) in rows {
+        let (code, out, err) = stepscope(&[&["tables", "-"], options].concat(), MOTION);
+        assert_eq!(code, Some(if why.is_empty() { 0 } else { 2 }), "{options:?}: {err}");
+        assert!(out.is_empty() != why.is_empty() && err.contains(why), "{options:?}: {err}");
+    }
+    let (code, _, err) = stepscope(&["tables", "--walker", "--entries", "q8"], "");
+    assert!(code == Some(2) && err.contains("cannot be used with"), "{err}");
 }
 
 #[test]

@@ -189,6 +189,11 @@ pub use first_difference::{Timed, first_difference};
 pub use stepscope_peripheral as peripheral;
 pub use stepscope_registers as registers;
 
+#[cfg(feature = "scenario")]
+pub use stepscope_scenario::{Problem, Problems};
+#[cfg(feature = "sim")]
+pub use stepscope_sim::{ControllerRun, FinishedRun, run, step_times};
+
 #[cfg(feature = "motion")]
 pub use stepscope_motion as motion;
 

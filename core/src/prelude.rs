@@ -1,4 +1,4 @@
-//! What most programs need, as far as the enabled features have it: `use stepscope_core::prelude::*`.
+//! What most programs need, for the enabled features: `use stepscope_core::prelude::*`.
 
 pub use crate::first_difference::first_difference;
 #[cfg(feature = "motion")]

@@ -1,6 +1,10 @@
 //! The prelude: its differences, and what may move to another thread.
 
 use std::{error::Error, thread};
+use stepscope_core::motion::{
+    moves::{Axis, Cosine, Move},
+    plan_axis,
+};
 use stepscope_core::prelude::*;
 use stepscope_core::sim::{Run, framed_host::Conversation, session::Session};
 
@@ -29,6 +33,25 @@ fn an_experiment_runs_in_another_thread() {
     });
     let here = run(&Scenario::default()).expect("the default motion");
     assert_eq!(digest.join().expect("no panic"), here.digest());
+}
+
+/// The two ways to step times have one error.
+fn steps_of_an_axis(axis: &Axis) -> Result<Vec<ScheduledStep>, Problems> {
+    stepscope_core::run(&Scenario::default())?;
+    Ok(plan_axis(axis, "axis")?.due_steps(16_000_000).collect())
+}
+
+#[test]
+fn problems_of_a_plan_become_those_of_a_scenario() {
+    let due = stepscope_core::step_times(&Scenario::default(), 0).expect("the default motion");
+    assert_eq!(steps_of_an_axis(&Axis::default()), Ok(due));
+    let cosine = Cosine { duration_s: -1.0, ..Cosine::default() };
+    let refused = steps_of_an_axis(&Axis { moves: vec![Move::Cosine(cosine)], ..Axis::default() });
+    let problems: stepscope_core::Problems = refused.expect_err("a negative time");
+    assert!(
+        problems.to_string().starts_with("axis.moves[0].cosine.duration_s: -1 s is out of range"),
+        "{problems}"
+    );
 }
 
 #[test]

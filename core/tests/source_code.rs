@@ -30,9 +30,15 @@ int main(void) {
     TIME cycles;
     unsigned long long time = 0, steps = 0, min = ~0ULL, max = 0;
     uint8_t event;
+    int has_turned = 0;
     axis_0_begin(&walk);
     while ((event = axis_0_next(&walk, &cycles)) != STEPSCOPE_END) {
         time += cycles;
+        /* A step has a time, and so has the event after a change of direction. */
+        if (cycles == 0 && (event == STEPSCOPE_STEP || has_turned)) {
+            return 3;
+        }
+        has_turned = cycles == 0;
         if ((event == STEPSCOPE_STEP || cycles != 0) && cycles < min) {
             min = cycles;
         }
@@ -44,7 +50,7 @@ int main(void) {
             printf("%llu %d\n", time, walk.right);
         }
     }
-    /* The end is for ever. */
+    /* The end repeats. */
     if (axis_0_next(&walk, &cycles) != STEPSCOPE_END || cycles != 0) {
         return 1;
     }

@@ -4,8 +4,8 @@
  * plan.h is the table, as `stepscope tables SCENARIO --format avr --with-walker --name plan --out plan.h` writes it, next
  * to stepscope_walk.h, which walks it: plan_next() has the cycles to the next step.
  *
- * Timer1 counts the processor's cycles and is never set back, so nothing is lost between two steps; the compare register
- * goes from step to step. It has 16 bits: what is farther off is reached by matches on the way, at which nothing is done.
+ * Timer1 counts the processor's cycles and is never reset, so nothing is lost between two steps; the compare register
+ * moves from step to step. It has 16 bits: longer waits use intermediate matches that do nothing.
  *
  *   compare match    |             |             |     |
  *   STEP           __|~~|__________|~~|________________|~~|____
@@ -32,6 +32,9 @@
 #if PLAN_CLOCK_HZ != F_CPU
 #error "plan.h counts other cycles than Timer1: use a scenario of clock_hz 16000000"
 #endif
+#if PLAN_FRACTION_BITS > 8
+#error "plan.h has times of 64 bits: use --entries ticks or q8"
+#endif
 
 static plan_walk walk;
 static uint8_t event;
@@ -42,7 +45,7 @@ static uint32_t beyond;
 static volatile int16_t position;
 static volatile uint8_t done;
 
-/* Goes on to the next event. A turn is a wait of 0 cycles, with a step behind it. */
+/* Loads the next event. A change of direction is a wait of 0 cycles, never two in a row. */
 static void next_event(void)
 {
     event = plan_next(&walk, &beyond);
@@ -54,7 +57,7 @@ static void next_event(void)
     }
 }
 
-/* Sets the next match: the event, or one on the way, from which there is more than half a turn of the timer to go. */
+/* Sets the next match: the event, or an intermediate one that leaves at least 0x8000 cycles. */
 static void set_match(void)
 {
     uint16_t way = beyond > 0xffff ? 0x8000 : beyond;
@@ -121,7 +124,7 @@ int main(void)
     while (!done)
         report();
 
-    /* Asleep for good. */
+    /* With interrupts off, nothing wakes the chip. */
     cli();
     sleep_enable();
     sleep_cpu();

@@ -1,13 +1,14 @@
 //! Tables as files of source code, and `--check`.
 
-use super::{Arguments, Axes, AxisChoice, FormName, Search, Steps, WindowName};
+use super::options::{FormName, Search, WindowName};
+use super::{Arguments, Axes, AxisChoice, Steps};
 use crate::failure::{Failure, plural};
 use crate::output::{self, Outputs, STANDARD};
 use crate::{progress, scenarios, terminal};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stepscope_core::inspect::export::source_code::{
-    Language, NamedTable, Origin, Request, Source, WALKER, WALKER_FILE, WrittenTable, read_c,
+    Language, NamedTable, Origin, Request, Source, WALKER, WALKER_FILE, WrittenTable, first_axis, read_c,
 };
 use stepscope_core::motion::step_tables::{EntryFormat, Stored};
 
@@ -66,10 +67,10 @@ impl Chosen {
             steps: steps.as_deref(),
             axis: self.axis.as_deref(),
             form: self.form.name(),
-            error_us: arguments.error_us.get(),
+            error_us: arguments.error_us(),
             interval_part: arguments.interval_part.map(Into::into),
-            is_early: arguments.window == WindowName::Early,
-            is_quick: arguments.search == Search::Quick,
+            is_early: arguments.window == Some(WindowName::Early),
+            is_quick: arguments.search == Some(Search::Quick),
             entries: self.format.name,
             language: language.name(),
             name: &self.name,
@@ -137,26 +138,31 @@ fn walker_path(arguments: &Arguments, language: Language) -> Result<PathBuf, Fai
 
 /// `--check`: compares the tables of `file`, or those that would be written.
 pub(super) fn check(axes: &Axes, arguments: &Arguments, file: Option<&Path>) -> Result<(), Failure> {
-    let tables = match file {
+    let (tables, axis) = match file {
         Some(path) => {
-            read_c(&scenarios::text(path)?).map_err(|why| Failure::Invalid(path.to_owned(), why))?
+            let text = scenarios::text(path)?;
+            let tables = read_c(&text).map_err(|why| Failure::Invalid(path.to_owned(), why))?;
+            (tables, first_axis(&text))
         }
         None => {
             let language = arguments.format.language().unwrap_or(Language::C);
             let language = if language == Language::Avr { Language::Avr } else { Language::C };
             let (text, _) = Chosen::new(axes, arguments)?.text(axes, arguments, language)?;
-            read_c(&text).map_err(|why| Failure::Invalid(axes.path.clone(), why))?
+            let tables = read_c(&text).map_err(|why| Failure::Invalid(axes.path.clone(), why))?;
+            (tables, 0)
         }
     };
     let first = match arguments.axis {
         Some(AxisChoice::One(axis)) => axis,
-        Some(AxisChoice::All) | None => 0,
+        Some(AxisChoice::All) => 0,
+        None => axis,
     };
     let (count, plans) = (tables.len(), axes.axes.len());
     if first + count > plans {
         let path = file.unwrap_or(&axes.path).to_owned();
         let why = format!(
-            "{count} tables from axis {first} on, but the scenario has {plans}; use the scenario of these tables"
+            "{count} table{} from axis {first} on, but the scenario has {plans}; use the scenario of the tables",
+            plural(count as u64)
         );
         return Err(Failure::Invalid(path, why));
     }
@@ -167,8 +173,8 @@ pub(super) fn check(axes: &Axes, arguments: &Arguments, file: Option<&Path>) -> 
     match rows.iter().filter(|(passed, _)| !passed).count() {
         0 => Ok(()),
         differ => {
-            let s = plural(count as u64);
-            Err(Failure::Check(format!("--check: {differ} of {count} table{s} differ from the plan")))
+            let (s, verb) = (plural(count as u64), if differ == 1 { "differs" } else { "differ" });
+            Err(Failure::Check(format!("--check: {differ} of {count} table{s} {verb} from the plan")))
         }
     }
 }
@@ -183,7 +189,9 @@ fn row(table: &WrittenTable, axis: usize, steps: &Steps, clock_hz: u32) -> (bool
     let result = match &found {
         Ok(largest) => {
             format!(
-                "passed: {steps} steps, largest error {largest} cycles, at most {max_error_cycles} stated"
+                "passed: {steps} step{}, largest error {largest} cycle{}, at most {max_error_cycles} stated",
+                plural(*steps),
+                plural(*largest)
             )
         }
         Err(why) => format!("failed: {why}"),

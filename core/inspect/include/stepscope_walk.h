@@ -1,7 +1,7 @@
 /* stepscope_walk.h: walks step tables that `stepscope tables --format c` or `--format avr` writes.
  *
  * Put this file next to the tables. C99, C++11 and avr-gcc 5.4; no heap, no floats, no loops. A call reads at most one
- * entry and changes only its walk, so walks of their own may interrupt each other. For a table named turn:
+ * entry and changes only its walk, so separate walks may interrupt each other. For a table named turn:
  *
  *   turn_walk walk;                             turn_begin(&walk) begins at time 0, direction left
  *   uint8_t event = turn_next(&walk, &cycles);  the next event, `cycles` after the one before it
@@ -11,8 +11,9 @@
  *   STEPSCOPE_END   no more events; cycles is 0
  *
  * Fractions of a cycle are carried, so times are those of the table, rounded down. A change of direction is a WAIT of
- * 0 cycles. No other event has 0 cycles: the fewest are TURN_MIN_CYCLES, the most TURN_MAX_CYCLES. A sample interrupt,
- * for Timer1 of an AVR without prescaler and TURN_MAX_CYCLES below 65536:
+ * 0 cycles; the next event follows it at once and has a time. A table without steps is one WAIT of 0 cycles. All other
+ * events have TURN_MIN_CYCLES to TURN_MAX_CYCLES: an interval that is too long for an entry is divided evenly into waits.
+ * A sample interrupt, for Timer1 of an AVR without prescaler and TURN_MAX_CYCLES below 65536:
  *
  *   static turn_walk walk;
  *   static uint8_t event = STEPSCOPE_WAIT;      enable the interrupt after turn_begin(&walk) and OCR1A = TCNT1 + 1000

@@ -54,7 +54,7 @@ pub use planners::axis::{AxisPlan, PlannedMove};
 pub use planners::plan::{AxisList, plan_axis, plan_lists, plan_move};
 pub use planners::{due_by::DueBy, profile::Profile};
 pub use problem::{Cause, Problem, ValueError};
-pub use problems::{MAX_PROBLEMS, Problems};
+pub use problems::{MAX_PROBLEMS, Problems, WiderCause};
 pub use timing::ScheduledStep;
 pub use validator::Validator;
 

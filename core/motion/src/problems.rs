@@ -53,6 +53,15 @@ impl<C> Problems<C> {
     }
 }
 
+/// A cause of another crate that contains those of a plan: `?` converts the plan's [`Problems`] to it.
+pub trait WiderCause: From<Cause> {}
+
+impl<C: WiderCause> From<Problems> for Problems<C> {
+    fn from(problems: Problems) -> Self {
+        problems.widen()
+    }
+}
+
 impl<C> From<Problem<C>> for Problems<C> {
     fn from(problem: Problem<C>) -> Self {
         Self(alloc::vec![problem])

@@ -102,6 +102,8 @@ impl From<ConfigError> for Cause {
     }
 }
 
+impl stepscope_motion::WiderCause for Cause {}
+
 impl Cause {
     /// Whether the check used several fields. Such a problem is skipped if one of them is unreadable.
     pub const fn depends_on_several_fields(&self) -> bool {

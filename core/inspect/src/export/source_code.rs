@@ -11,11 +11,11 @@ mod rust;
 
 pub use name::check_name;
 pub use origin::{Origin, Request, quoted};
-pub use read::{WrittenTable, read_c};
+pub use read::{WrittenTable, first_axis, read_c};
 
 use alloc::{format, string::String, vec::Vec};
 use core::fmt::{self, Write};
-use stepscope_motion::step_tables::{Entry, Stored, TableEvent};
+use stepscope_motion::step_tables::{Entry, Stored, TableEvent, TableWalk};
 
 /// The walker that tables in C include, as a file.
 pub const WALKER: &str = include_str!("../../include/stepscope_walk.h");
@@ -85,26 +85,29 @@ impl Source<'_> {
         for named in self.tables {
             let NamedTable { name, table } = named;
             let (error, format) = (table.error, table.format);
-            let count = named.entries().len();
+            let is_c = matches!(language, Language::C | Language::Avr);
+            let count = if is_c { named.entries().len() } else { table.entries.len() };
             let bytes = count as u64 * format.bytes();
             // A struct of 64-bit numbers has padding on most machines, and none on an AVR.
             let is_padded = language == Language::C && format.widths().contains(&64);
             let padded =
                 |bytes: u64| if is_padded { format!(" ({bytes} with padding)") } else { String::new() };
             lines.push(format!(
-                "{name}: {} steps in {count} entries of {} bytes{}, {bytes} bytes{}; largest timing error {} cycles ({} us), r.m.s. {}.",
-                error.steps,
+                "{name}: {} in {} of {} bytes{}, {bytes} bytes{}; largest timing error {} ({} us), r.m.s. {}.",
+                counted(error.steps, "step", "steps"),
+                counted(count as u64, "entry", "entries"),
                 format.bytes(),
                 padded(24),
                 padded(24 * count as u64),
-                error.max_cycles,
+                counted(error.max_cycles, "cycle", "cycles"),
                 self.micros(error.max_cycles as f64),
                 short(error.rms()),
             ));
-            if let Some(shortest) = Extremes::of(table).shortest {
+            if let Some(shortest) = Extremes::of(table.walk()).shortest {
                 lines.push(format!(
-                    "The largest error is {} % of the shortest step interval, {shortest} cycles ({} us).",
+                    "The largest error is {} % of the shortest step interval, {} ({} us).",
                     short(100.0 * error.max_cycles as f64 / shortest as f64),
+                    counted(shortest, "cycle", "cycles"),
                     self.micros(shortest as f64)
                 ));
             }
@@ -177,11 +180,11 @@ struct Extremes {
 }
 
 impl Extremes {
-    fn of(table: &Stored) -> Self {
+    fn of(walk: TableWalk<'_>) -> Self {
         let mut extremes = Self::default();
         let mut since_step: Option<u64> = None;
         let shorter = |found: Option<u64>, cycles: u64| Some(found.map_or(cycles, |found| found.min(cycles)));
-        for event in table.walk() {
+        for event in walk {
             let (TableEvent::Step { cycles, .. } | TableEvent::Wait { cycles, .. }) = event;
             since_step = since_step.map(|before| before.saturating_add(cycles));
             extremes.max = extremes.max.max(cycles);
@@ -197,6 +200,10 @@ impl Extremes {
         }
         extremes
     }
+}
+
+fn counted(number: u64, one: &str, many: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { many })
 }
 
 /// Three significant digits or more, without trailing zeros.

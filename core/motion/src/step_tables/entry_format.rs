@@ -89,8 +89,8 @@ impl EntryFormat {
         FRACTION_BITS - self.fraction_bits
     }
 
-    /// The list's segments as entries of this format. A segment that is too large for an entry becomes several entries: a wait
-    /// before a long interval, one entry per step for a large add, or parts of a large count.
+    /// The list's segments as entries of this format. A segment that is too large for an entry becomes several entries: waits
+    /// of equal length before a long interval, one entry per step for a large add, or parts of a large count.
     /// Errors: a time that is not a multiple of this format's unit.
     pub fn pack(self, list: &SegmentList) -> Result<Vec<Entry>, Cause> {
         let mut packer = Packer { format: self, entries: Vec::new(), right: false };
@@ -155,23 +155,30 @@ impl Packer {
         }
     }
 
-    fn wait(&mut self, mut time: u64) {
-        while time > 0 {
-            let interval = time.min(self.format.max_interval());
-            self.entries.push(Entry { interval, count: 0, add: self.right.into() });
-            time -= interval;
+    fn wait(&mut self, time: u64) {
+        let rest = self.wait_before_last_part(time);
+        if rest > 0 {
+            self.entries.push(Entry { interval: rest, count: 0, add: self.right.into() });
         }
     }
 
+    /// Divides a long time evenly, so that no part is too short for a timer; returns the last part.
+    fn wait_before_last_part(&mut self, mut time: u64) -> u64 {
+        for parts in (2..=time.div_ceil(self.format.max_interval())).rev() {
+            let interval = time / parts;
+            self.entries.push(Entry { interval, count: 0, add: self.right.into() });
+            time -= interval;
+        }
+        time
+    }
+
     fn steps(&mut self, mut count: u32, mut interval: u64, add: i64) {
-        let (max_count, max_interval) = (self.format.max_count(), self.format.max_interval());
         let is_representable = self.format.has_range_for(interval, count, add);
-        let max_part = if is_representable { max_count } else { 1 };
+        let max_part = if is_representable { self.format.max_count() } else { 1 };
         while count > 0 {
             let part = count.min(max_part);
-            self.wait(interval.saturating_sub(max_interval));
-            let add_of_part = if part == 1 { 0 } else { add };
-            self.entries.push(Entry { interval: interval.min(max_interval), count: part, add: add_of_part });
+            let own = self.wait_before_last_part(interval);
+            self.entries.push(Entry { interval: own, count: part, add: if part == 1 { 0 } else { add } });
             // Only the interval after the last step of a valid list can saturate, and no entry uses it.
             interval = interval.saturating_add_signed(add.saturating_mul(part.into()));
             count -= part;
@@ -203,12 +210,21 @@ mod tests {
             (steps(70_000, 50, 0, false), vec![(50, 65_535, 0), (50, 4465, 0)]),
             (steps(70_000, 50, 1, false), vec![(50, 65_535, 1), (65_585, 4465, 1)]),
             (steps(2, 50, 40_000, true), vec![(0, 0, 1), (50, 1, 0), (40_050, 1, 0)]),
-            (steps(1, 1 << 32, 5, false), vec![(1, 0, 0), (u64::from(u32::MAX), 1, 0)]),
-            (Segment::Dwell((1 << 48) + (5 << 16)), vec![(u64::from(u32::MAX), 0, 0), (6, 0, 0)]),
+            (steps(1, u32::MAX.into(), 5, false), vec![(u32::MAX.into(), 1, 0)]),
+            (steps(1, 1 << 32, 5, false), vec![(1 << 31, 0, 0), (1 << 31, 1, 0)]),
+            (steps(1, (1 << 32) + 1, 5, true), vec![(0, 0, 1), (1 << 31, 0, 1), ((1 << 31) + 1, 1, 0)]),
+            (Segment::Dwell((1 << 48) + (5 << 16)), vec![((1 << 31) + 2, 0, 0), ((1 << 31) + 3, 0, 0)]),
+            (Segment::Dwell(u64::from(u32::MAX) << 16), vec![(u32::MAX.into(), 0, 0)]),
             (Segment::Dwell(0), vec![]),
         ];
         for (segment, expected) in rows {
             assert_eq!(pack(EntryFormat::TICKS, vec![segment]), Ok(expected), "{segment:?}");
+        }
+        // In q8 an interval has up to 2^24 cycles less 1/256.
+        for (cycles, first) in [(1_u64 << 24, 1_u64 << 31), ((1 << 24) + 1, (1 << 31) + 128)] {
+            let last = (cycles << 8) - first;
+            let expected = vec![(0, 0, 1), (first, 0, 1), (last, 1, 0)];
+            assert_eq!(pack(EntryFormat::Q8, vec![steps(1, cycles, 0, true)]), Ok(expected));
         }
         let part = Segment::Steps { count: 2, interval: 3 << 15, add: 0, right: false };
         assert_eq!(pack(EntryFormat::Q8, vec![part]), Ok(vec![(3 << 7, 2, 0)]));

@@ -40,7 +40,9 @@ impl Window {
         let interval = time - from;
         let max = format.max_interval();
         // If the window's end is too far for one interval, a wait comes first. It leaves half an interval.
+        // In a wide window there may be no need for one; a very short wait would be no time for a timer.
         let wait = if self.high - from > max { interval.saturating_sub(max / 2) } else { 0 };
+        let wait = if wait < min_interval { 0 } else { wait };
         LongestEntry { wait, interval: interval - wait, add: 0, count: 1 }
     }
 }

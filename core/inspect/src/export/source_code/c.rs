@@ -26,7 +26,7 @@ impl Source<'_> {
     fn c_table(&self, out: &mut impl Write, named: &NamedTable<'_>, avr: bool) -> fmt::Result {
         let NamedTable { name, table } = named;
         let capitals = Capitals(name);
-        let (entries, extremes) = (named.entries(), Extremes::of(table));
+        let (entries, extremes) = (named.entries(), Extremes::of(table.walk()));
         let kind = if table.format == EntryFormat::Q16 {
             "q16"
         } else if table.format == EntryFormat::Q8 {
@@ -37,6 +37,7 @@ impl Source<'_> {
         writeln!(out, "\n#define {capitals}_ENTRIES {}", count(entries.len() as u64))?;
         writeln!(out, "#define {capitals}_STEPS {}", long(table.error.steps))?;
         writeln!(out, "#define {capitals}_CLOCK_HZ {}", long(self.clock_hz.into()))?;
+        writeln!(out, "#define {capitals}_FRACTION_BITS {}", count(table.format.fraction_bits().into()))?;
         writeln!(out, "#define {capitals}_MAX_ERROR_CYCLES {}", long(table.error.max_cycles))?;
         writeln!(
             out,

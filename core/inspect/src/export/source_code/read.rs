@@ -1,6 +1,6 @@
 //! Reads tables in C back, and compares their walk with the steps of a plan.
 
-use super::Capitals;
+use super::{Capitals, Extremes, counted};
 use alloc::{
     format,
     string::{String, ToString},
@@ -20,6 +20,9 @@ pub struct WrittenTable {
     pub steps: u64,
     pub clock_hz: u64,
     pub max_error_cycles: u64,
+    /// Least and greatest cycles of an event, without waits of 0.
+    pub min_cycles: u64,
+    pub max_cycles: u64,
 }
 
 /// The tables of a file of `stepscope tables --format c` or `--format avr`, in their order.
@@ -50,6 +53,14 @@ pub fn read_c(text: &str) -> Result<Vec<WrittenTable>, String> {
     Ok(tables)
 }
 
+/// The axis of a file's first table, by the command in its header; 0 if there is none.
+pub fn first_axis(text: &str) -> usize {
+    let command = text.lines().find_map(|line| line.split_once(": stepscope tables ")).unwrap_or_default().1;
+    // Options follow the paths, in a fixed order. A quoted path ends with a quote, which is no number.
+    let axis = command.rsplit_once(" --form ").and_then(|(before, _)| before.rsplit_once("--axis "));
+    axis.and_then(|(_, axis)| axis.parse().ok()).unwrap_or(0)
+}
+
 fn without_comments(text: &str) -> String {
     let mut code = String::new();
     let mut rest = text;
@@ -70,10 +81,13 @@ fn table(code: &str, name: &str, format: EntryFormat) -> Result<WrittenTable, St
     };
     let (count, steps) = (define("ENTRIES")?, define("STEPS")?);
     if count != entries.len() as u64 {
-        return Err(format!("{} entries, and {count} by its macro; export the table again", entries.len()));
+        let found = counted(entries.len() as u64, "entry", "entries");
+        return Err(format!("{found}, and {count} by its macro; export the table again"));
     }
     let (clock_hz, max_error_cycles) = (define("CLOCK_HZ")?, define("MAX_ERROR_CYCLES")?);
-    Ok(WrittenTable { name: name.to_string(), format, entries, steps, clock_hz, max_error_cycles })
+    let (min_cycles, max_cycles) = (define("MIN_CYCLES")?, define("MAX_CYCLES")?);
+    let name = name.to_string();
+    Ok(WrittenTable { name, format, entries, steps, clock_hz, max_error_cycles, min_cycles, max_cycles })
 }
 
 /// The initializers `{interval, count, add},` of `NAME_entries[…] = { … };`
@@ -121,11 +135,11 @@ fn signed(text: &str) -> Option<i64> {
 }
 
 impl WrittenTable {
-    /// Walks the table next to the steps that are due, and returns the largest timing error in cycles.
+    /// Compares the walk with the planned steps, and returns the largest timing error in cycles.
     ///
     /// # Errors
-    /// The first difference: another clock, another number of steps, a step in the other direction, or a step farther from
-    /// its time than the table states.
+    /// The first difference: another clock, another number of steps, a step in the other direction, a step farther from
+    /// its time than the table states, or events that are shorter or longer than it states.
     pub fn check(&self, due: impl IntoIterator<Item = ScheduledStep>, clock_hz: u32) -> Result<u64, String> {
         if self.clock_hz != u64::from(clock_hz) {
             return Err(format!(
@@ -139,10 +153,16 @@ impl WrittenTable {
             let (found, due) = match (found.next(), due.next()) {
                 (None, None) => break,
                 (Some(_), None) => {
-                    return Err(format!("the plan ends after {steps} steps, the table does not"));
+                    return Err(format!(
+                        "the plan ends after {}, the table does not",
+                        counted(steps, "step", "steps")
+                    ));
                 }
                 (None, Some(_)) => {
-                    return Err(format!("the table ends after {steps} steps, the plan does not"));
+                    return Err(format!(
+                        "the table ends after {}, the plan does not",
+                        counted(steps, "step", "steps")
+                    ));
                 }
                 (Some(found), Some(due)) => (found, due),
             };
@@ -154,14 +174,27 @@ impl WrittenTable {
             let error = found.cycle.abs_diff(due.cycle);
             if error > self.max_error_cycles {
                 return Err(format!(
-                    "step {steps} is in cycle {} of the table and cycle {} of the plan: {error} cycles, the table states at most {}",
-                    found.cycle, due.cycle, self.max_error_cycles
+                    "step {steps} is in cycle {} of the table and cycle {} of the plan: {}, the table states at most {}",
+                    found.cycle,
+                    due.cycle,
+                    counted(error, "cycle", "cycles"),
+                    self.max_error_cycles
                 ));
             }
             (steps, largest) = (steps + 1, largest.max(error));
         }
         if steps != self.steps {
-            return Err(format!("the table has {steps} steps, and {} by its macro", self.steps));
+            let steps = counted(steps, "step", "steps");
+            return Err(format!("the table has {steps}, and {} by its macro", self.steps));
+        }
+        let extremes = Extremes::of(TableWalk::new(&self.entries, self.format));
+        for (found, stated, name) in [
+            (extremes.min.unwrap_or(0), self.min_cycles, "MIN_CYCLES"),
+            (extremes.max, self.max_cycles, "MAX_CYCLES"),
+        ] {
+            if found != stated {
+                return Err(format!("{name} is {stated}, and {found} by the table's walk; export it again"));
+            }
         }
         Ok(largest)
     }

@@ -56,6 +56,7 @@ fn a_table_in_c_has_this_form() {
 #define TURN_ENTRIES 3U
 #define TURN_STEPS 0UL
 #define TURN_CLOCK_HZ 16000000UL
+#define TURN_FRACTION_BITS 0U
 #define TURN_MAX_ERROR_CYCLES 0UL
 #define TURN_MIN_CYCLES 16130UL /* of an event of turn_next(), without waits of 0 */
 #define TURN_MAX_CYCLES 40000UL
@@ -79,7 +80,7 @@ fn literals_are_as_wide_as_their_type() {
     assert!(c.contains(" {887218UL, 3U, (-32767 - 1)},"), "{c}");
     let c = written(vec![entry(u64::MAX, 70_000, i64::MIN)], EntryFormat::Q16, b"x", Language::C);
     assert!(c.contains("{18446744073709551615ULL, 70000UL, (-9223372036854775807LL - 1LL)}"), "{c}");
-    assert!(c.contains("1 entries of 20 bytes (24 with padding), 20 bytes (24 with padding);"), "{c}");
+    assert!(c.contains("1 entry of 20 bytes (24 with padding), 20 bytes (24 with padding);"), "{c}");
     let csv = written(vec![entry(u64::MAX, 70_000, i64::MIN)], EntryFormat::Q16, b"x", Language::Csv);
     let row = "18446744073709551615,70000,-9223372036854775808";
     assert_eq!(csv, format!("interval_q16,count,add_q16\n{row}\n"));
@@ -147,14 +148,47 @@ fn a_written_table_is_read_back() {
     for (from, to, why) in [
         ("{7UL, 1U, 0}", "{7UL, 1U}", "table turn: entry 0: {7UL, 1U} is no entry of format ticks"),
         ("{7UL, 1U, 0}", "{7UL, 65536U, 0}", "table turn: entry 0: {7UL, 65536U, 0} is no entry"),
-        ("ENTRIES 1U", "ENTRIES 2U", "1 entries, and 2 by its macro"),
+        ("ENTRIES 1U", "ENTRIES 2U", "1 entry, and 2 by its macro"),
         ("TURN_CLOCK_HZ", "CLOCK", "no #define TURN_CLOCK_HZ with a number"),
+        ("TURN_MIN_CYCLES", "MIN", "no #define TURN_MIN_CYCLES with a number"),
         ("turn_entries[", "entries[", "no array turn_entries"),
         ("STEPSCOPE_TICKS_TABLE(turn)", "", "no table; use a file of stepscope tables"),
     ] {
         let refused = read_c(&c.replace(from, to)).unwrap_err();
         assert!(refused.contains(why), "{refused}");
     }
+}
+
+#[test]
+fn the_first_axis_is_that_of_the_command_in_the_header() {
+    for (path, axis, expected) in [
+        ("turn.json", None, 0),
+        ("turn.json", Some("3"), 3),
+        ("turn.json", Some("all"), 0),
+        // Paths that contain options.
+        ("x --axis 7", None, 0),
+        ("x --axis 7 --form y", Some("2"), 2),
+        ("*/ --axis 7", None, 0),
+    ] {
+        let table = table(vec![entry(7, 1, 0)], EntryFormat::TICKS);
+        let request = Request { axis, ..request(path.as_bytes(), Language::C) };
+        let origin = Origin::new(&request, &Scenario::default(), None);
+        let tables = [NamedTable { name: "turn".into(), table: &table }];
+        let source = Source { name: "turn", tables: &tables, clock_hz: 1, origin: &origin };
+        let mut out = String::new();
+        source.write(Language::C, &mut out).unwrap();
+        assert_eq!(first_axis(&out), expected, "{out}");
+    }
+    assert_eq!(first_axis("static int x;"), 0);
+}
+
+#[test]
+fn a_table_without_steps_has_no_entry_but_in_c() {
+    let head = |language| written(Vec::new(), EntryFormat::TICKS, b"x", language);
+    assert!(head(Language::C).contains("turn: 0 steps in 1 entry of 8 bytes, 8 bytes; "));
+    let rust = head(Language::Rust);
+    assert!(rust.contains("turn: 0 steps in 0 entries of 8 bytes, 0 bytes; "), "{rust}");
+    assert!(rust.contains("TURN_COUNT: [u16; 0]"), "{rust}");
 }
 
 #[test]
@@ -167,13 +201,24 @@ fn a_check_names_the_first_difference() {
         steps: 3,
         clock_hz: 1000,
         max_error_cycles: 4,
+        min_cycles: 100,
+        max_cycles: 100,
     };
     let due = |cycles: &[u64]| -> Vec<_> {
         cycles.iter().map(|&cycle| ScheduledStep { cycle, right: cycle != 301 }).collect()
     };
     assert_eq!(table.check(due(&[100, 203, 300]), 1000), Ok(3));
+    for (min_cycles, max_cycles, why) in [
+        (99, 100, "MIN_CYCLES is 99, and 100 by the table's walk"),
+        (100, 4_294_967_295, "MAX_CYCLES is 4294967295, and 100 by the table's walk"),
+    ] {
+        let stated = WrittenTable { min_cycles, max_cycles, ..table.clone() };
+        let refused = stated.check(due(&[100, 200, 300]), 1000).unwrap_err();
+        assert!(refused.starts_with(why), "{refused}");
+    }
     for (cycles, clock_hz, why) in [
-        (&[100, 200, 300][..], 999, "the table counts cycles of 1000 Hz, the plan of 999 Hz"),
+        (&[100][..], 1000, "the plan ends after 1 step, the table does not"),
+        (&[100, 200, 300], 999, "the table counts cycles of 1000 Hz, the plan of 999 Hz"),
         (&[100, 205, 300], 1000, "step 1 is in cycle 200 of the table and cycle 205 of the plan: 5 cycles"),
         (&[100, 200], 1000, "the plan ends after 2 steps"),
         (&[100, 200, 300, 400], 1000, "the table ends after 3 steps"),
