@@ -1,4 +1,12 @@
-//! What most programs need, for the enabled features: `use stepscope_core::prelude::*`.
+//! What most programs need, for the enabled features.
+//!
+//! ```
+//! use stepscope_core::prelude::*;
+//!
+//! let (mut device, mut trace) = (Device::new(&Config::default()), Vec::<Record>::new());
+//! assert_eq!(device.clock(true, &mut trace), device.levels());
+//! assert_eq!(device.positions(), [0]);
+//! ```
 
 pub use crate::first_difference::first_difference;
 #[cfg(feature = "motion")]

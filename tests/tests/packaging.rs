@@ -128,7 +128,7 @@ fn the_tests_run_every_example_of_the_facade() {
     let core = packages.iter().find(|package| package["name"] == "stepscope-core").unwrap();
     let targets = core["targets"].as_array().unwrap().iter();
     let examples: Vec<&Value> = targets.filter(|target| target["kind"][0] == "example").collect();
-    assert_eq!(examples.len(), 4);
+    assert_eq!(examples.len(), 5);
     assert!(
         examples.iter().all(|example| example["test"] == true),
         "an example is built but not run: {examples:#?}"

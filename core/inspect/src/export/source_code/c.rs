@@ -1,6 +1,6 @@
 //! C99, for avr-gcc in program memory. `stepscope_walk.h` has the types and makes the functions.
 
-use super::{Capitals, Extremes, Language, NamedTable, Source, WALKER_FILE};
+use super::source::{Capitals, Extremes, Language, NamedTable, Source, WALKER_FILE};
 use alloc::{format, string::String};
 use core::fmt::{self, Write};
 use stepscope_motion::step_tables::EntryFormat;

@@ -1,6 +1,6 @@
 //! Reads tables in C back, and compares their walk with the steps of a plan.
 
-use super::{Capitals, Extremes, counted};
+use super::source::{Capitals, Extremes, counted};
 use alloc::{
     format,
     string::{String, ToString},

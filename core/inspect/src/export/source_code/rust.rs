@@ -1,6 +1,6 @@
 //! Rust: an array per number of an entry.
 
-use super::{Capitals, Language, NamedTable, Source};
+use super::source::{Capitals, Language, NamedTable, Source};
 use alloc::format;
 use core::fmt::{self, Write};
 use stepscope_motion::step_tables::{Entry, EntryFormat, Stored};
