@@ -108,7 +108,7 @@ const cases = [
     [null, null, null, null, 0],
   ],
   [
-    "another kind of source begins with fresh views, the same kind does not",
+    "another kind of source shows its whole run, the same kind does not",
     [
       edit("source", { motion: {} }),
       done(1),
@@ -333,6 +333,12 @@ const cases = [
     [open(10, 50), done(0)],
     (s) => [s.window, s.pendingView],
     [{ start: 10, end: 50 }, null],
+  ],
+  [
+    "a view that is selected while a link's run lasts stays, with the link's window",
+    [open(10, 50), { type: "view", view: "study" }, done(0)],
+    (s) => [s.view, s.window],
+    ["study", { start: 10, end: 50 }],
   ],
   ["a link's window beyond the run is left", [open(10, 5000), done(0)], (s) => s.window, null],
   [

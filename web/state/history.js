@@ -1,5 +1,5 @@
 /** Changes of the scenario, with undo and redo. */
-import { FRESH_VIEW, OWN_TEXTS } from "./initial.js";
+import { FRESH_TIME, OWN_TEXTS } from "./initial.js";
 import { get, movedTo, set } from "./paths.js";
 
 /** @typedef {import("./types.js").State} State */
@@ -70,7 +70,7 @@ export function changed(state, scenario, origin) {
   return {
     ...state,
     // The times of another kind of source are other times.
-    ...(sourceKind(state.scenario) === sourceKind(scenario) ? {} : FRESH_VIEW),
+    ...(sourceKind(state.scenario) === sourceKind(scenario) ? {} : FRESH_TIME),
     scenario,
     origin,
     run: { phase: "waiting", progress: null, message: "" },

@@ -10,21 +10,26 @@ export const NO_FILTER = { text: "", kind: "", address: null, outcome: "", only:
 /** Name and note of the user's own experiment. @type {import("./types.js").Borrowed} */
 export const OWN_TEXTS = { title: false, note: false };
 
-/** The part of the state that is reset when the scenario is replaced. */
-export const FRESH_VIEW = {
-  controller: 0,
+/** The part of the state that belongs to the times of a run. */
+export const FRESH_TIME = {
   window: null,
   zooms: [],
   gesture: null,
   picked: null,
+  cursors: { a: null, b: null },
+  markers: NO_MARKERS,
+};
+
+/** The part of the state that is reset when the scenario is replaced. */
+export const FRESH_VIEW = {
+  ...FRESH_TIME,
+  controller: 0,
   harmonic: null,
   packet: null,
   filter: NO_FILTER,
   sides: {},
   hover: null,
   highlighted: null,
-  cursors: { a: null, b: null },
-  markers: NO_MARKERS,
   axis: 0,
   hiddenAxes: [],
   unit: null,

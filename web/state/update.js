@@ -108,7 +108,12 @@ export function update(state, message) {
     case "rows":
       return { ...state, panes: { ...state.panes, pulses: { ...state.panes.pulses, ...message.rows } } };
     case "view":
-      return { ...state, view: message.view };
+      // The user's choice is newer than that of a link that is still running.
+      return {
+        ...state,
+        view: message.view,
+        pendingView: state.pendingView && { ...state.pendingView, view: message.view },
+      };
     case "study":
       return { ...state, study: message.study };
     case "notice":

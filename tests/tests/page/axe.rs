@@ -98,6 +98,7 @@ fn axe_finds_nothing_in_any_tab_of_the_study() -> Result<()> {
             look(&page, tab, &mut wrong).await?;
         }
         page.preset("patent-2019-figure-2").await?;
+        page.ready().await?;
         page.click("#study").await?;
         page.click("#study-tab-motor").await?;
         page.until("document.querySelectorAll('#study-motor tbody tr').length > 4").await?;
@@ -144,6 +145,8 @@ fn axe_finds_nothing_where_something_is_wrong_or_asked() -> Result<()> {
         )
         .await?;
         look(&page, "messages", &mut wrong).await?;
+        // The gallery is empty until it opens; it is looked at with the kinds of experiments.
+        page.eval::<()>("document.getElementById('gallery').remove()").await?;
         let dialogs: usize = page.eval("document.querySelectorAll('dialog').length").await?;
         for index in 0..dialogs {
             let id: String = page

@@ -292,6 +292,7 @@ fn axe_finds_nothing_in_the_panel() -> Result<()> {
             }
             page.until(&format!("{LCD} !== undefined && {LCD} !== ''")).await?;
             page.press(".strip canvas", "n").await?;
+            page.js::<bool>("document.querySelector(`[data-input='zero']`).scrollIntoView({ block: 'center' }); return true;", vec![]).await?;
             page.click("[data-input='zero']").await?;
             page.click("[data-input='system']").await?;
             page.ready().await?;
