@@ -15,7 +15,7 @@ use stepscope_core::inspect::motion::{actual_motion::Pulses, spectra::Spectra};
 use stepscope_core::motion::{AxisPlan, ScheduledStep};
 use stepscope_core::peripheral::trace::{Step, steps as steps_of};
 use stepscope_core::scenario::{Problem, Scenario, Source, ValueError};
-use stepscope_core::sim::Experiment;
+use stepscope_core::sim::{Experiment, planned_steps};
 
 #[derive(Args)]
 struct Selection {
@@ -107,7 +107,8 @@ pub(crate) fn steps(arguments: &StepsArguments) -> Result<(), Failure> {
     let (scenario, experiment) = selection.validated()?;
     let clock_hz = experiment.config().clock_hz();
     let steps: Vec<ScheduledStep> = if arguments.planned {
-        selection.plan(&scenario, &experiment)?.due_steps(clock_hz).collect()
+        let steps = planned_steps(selection.plan(&scenario, &experiment)?, clock_hz);
+        steps.map_err(|problems| Failure::Scenario(selection.scenario.clone(), problems))?
     } else {
         let channel = selection.channel(&experiment)?;
         let recording = run_recording::of(selection.path(), &experiment)?;

@@ -6,6 +6,7 @@
 
 mod entry;
 mod report;
+mod table;
 
 use crate::failure::{Failure, INTERRUPTED};
 use crate::output::{Outputs, STANDARD};
@@ -13,10 +14,14 @@ use crate::{scenarios, terminal};
 use clap::Args;
 use entry::{Entry, Kind};
 use report::{CheckResult, Outcome, Results};
+use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 use std::time::Instant;
+
+/// Number of Ctrl-C's signal; POSIX names it.
+const SIGINT: i32 = 2;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -71,6 +76,7 @@ pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// What a call of the command printed.
+#[derive(Debug)]
 struct Called {
     code: i32,
     out: String,
@@ -78,18 +84,29 @@ struct Called {
 }
 
 /// Calls this program itself: a check is what its user can call by hand.
-fn call(folder: &Path, words: &[String]) -> Result<Called, Failure> {
+fn call(folder: &Path, words: &[impl AsRef<OsStr>]) -> Result<Called, Failure> {
     let failed = |error| Failure::File(PathBuf::from("stepscope"), error);
     let program = std::env::current_exe().map_err(failed)?;
     let mut command = Command::new(program);
     command.args(words).current_dir(folder).stdin(Stdio::null());
-    let output = command.output().map_err(failed)?;
-    let code = output.status.code().unwrap_or(i32::from(INTERRUPTED));
-    if code == i32::from(INTERRUPTED) {
+    called(command.output().map_err(failed)?)
+}
+
+/// Only Ctrl-C ends the list; a call that crashed is an error of its check.
+fn called(Output { status, stdout, stderr }: Output) -> Result<Called, Failure> {
+    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    let (out, mut err) = (text(stdout), text(stderr));
+    #[cfg(unix)]
+    let signal = std::os::unix::process::ExitStatusExt::signal(&status);
+    #[cfg(not(unix))]
+    let signal: Option<i32> = None;
+    if status.code() == Some(INTERRUPTED.into()) || signal == Some(SIGINT) {
         return Err(Failure::Interrupted);
     }
-    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-    Ok(Called { code, out: text(output.stdout), err: text(output.stderr) })
+    if let Some(signal) = signal {
+        err += &format!("\nended by signal {signal}");
+    }
+    Ok(Called { code: status.code().unwrap_or(1), out, err })
 }
 
 fn outcome_of(entry: &Entry, folder: &Path) -> Result<Outcome, Failure> {
@@ -110,7 +127,7 @@ fn outcome_of(entry: &Entry, folder: &Path) -> Result<Outcome, Failure> {
                 _ => Outcome::of_code(called.code, &called.err),
             }
         }
-        Kind::Table { table, run } => table_again(&folder.join(table), run.as_deref())?,
+        Kind::Table { table, run } => table_again(folder, table, run.as_deref())?,
     })
 }
 
@@ -121,26 +138,48 @@ fn has_driver(folder: &Path, scenario: &str) -> bool {
     scenarios::read(&path).is_ok_and(|scenario| scenario.driver_timing.is_some())
 }
 
-/// Makes a table again with the command in its head, whose paths count from the table's folder.
-fn table_again(path: &Path, run: Option<&str>) -> Result<Outcome, Failure> {
-    let stored = match scenarios::text(path) {
+/// Exports a table again with the command in its head; compares both.
+fn table_again(folder: &Path, table: &str, run: Option<&str>) -> Result<Outcome, Failure> {
+    let stored = match scenarios::text(&folder.join(table)) {
         Ok(stored) => stored,
         Err(failure @ Failure::File(..)) => return Ok(Outcome::Error(1, failure.to_string())),
         Err(failure) => return Ok(Outcome::Error(2, failure.to_string())),
     };
-    let Some(words) = entry::words_of_table(&stored, run) else {
-        let why = "the table has no line with its command; write it with stepscope tables of this version";
-        return Ok(Outcome::Error(2, why.to_owned()));
+    let arguments = match table::arguments(&stored, run) {
+        Ok(arguments) => arguments,
+        Err(why) => return Ok(Outcome::Error(2, why)),
     };
-    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let called = call(folder, &words)?;
+    let called = call(folder, &arguments)?;
     if called.code != 0 {
         return Ok(Outcome::of_code(called.code, &called.err));
     }
-    Ok(match entry::first_different_line(&called.out, &stored) {
+    Ok(match table::first_different_line(&called.out, &stored, run.is_some()) {
         None => Outcome::Passed,
         Some(line) => Outcome::Failed(format!(
-            "line {line} differs from the table that the command makes now; write the table again"
+            "line {line} differs from the command's current output; export the table again"
         )),
     })
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::process::ExitStatusExt;
+    use std::process::ExitStatus;
+
+    #[test]
+    fn a_crash_is_an_error_of_its_check_and_ctrl_c_ends_all() {
+        let ended = |raw| {
+            let status = ExitStatus::from_raw(raw);
+            called(Output { status, stdout: Vec::new(), stderr: b"it panicked\n".to_vec() })
+        };
+        for signal in [6, 9, 15] {
+            let Called { code, err, .. } = ended(signal).expect("a result");
+            let Outcome::Error(1, why) = Outcome::of_code(code, &err) else { panic!("{code}: {err}") };
+            assert_eq!(why, format!("it panicked; ended by signal {signal}"));
+        }
+        assert!(matches!(ended(2), Err(Failure::Interrupted)));
+        assert!(matches!(ended(130 << 8), Err(Failure::Interrupted)));
+        assert_eq!(ended(3 << 8).expect("a result").code, 3);
+    }
 }

@@ -136,6 +136,11 @@ fn an_axis_without_a_plan_or_a_motion_is_refused() {
     let rows: &[(&[&str], &str, &str)] = &[
         (&["curve", "-"], packets, "source: only a motion has a plan; use a source of kind motion"),
         (&["steps", "-", "--planned"], packets, "source: only a motion has a plan"),
+        (
+            &["steps", "-", "--planned"],
+            r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":24000001},"speed":{"steps_s":40000}}}]}]}}}"#,
+            "source: the axis has more than 24000000 planned steps; use a shorter motion",
+        ),
         (&["spectrum", "-", "--of", "ideal"], packets, "source: only a motion has a plan"),
         (
             &["steps", "-", "--axis", "1"],

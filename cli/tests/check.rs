@@ -4,6 +4,7 @@ use crate::program::stepscope;
 use std::{
     fs,
     path::{Path, PathBuf},
+    process::Command,
 };
 
 /// A folder with the sample files and this list.
@@ -88,11 +89,6 @@ fn checks_that_cannot_be_made_are_errors() {
             "error turn.json: the table has no line with its command",
         ),
         (
-            r#"{"checks":[{"capture":"own.vcd","against":"turn.json","channel":16},{"run":"turn.json"}]}"#,
-            2,
-            "error own.vcd: error: invalid value '16'",
-        ),
-        (
             r#"{"checks":[{"run":"turn.json","digest":"0000000000000000"},{"run":"turn.json","driver":"a4989"}]}"#,
             2,
             "failed turn.json: ",
@@ -113,7 +109,9 @@ fn checks_that_cannot_be_made_are_errors() {
 #[test]
 fn a_list_with_mistakes_is_refused_with_all_of_them() {
     let list = r#"{"checks":[5,{},{"run":"turn.json","digets":"x"},{"run":"turn.json","digest":"ABC"},
-        {"capture":"own.vcd"},{"run":"--trace=x"},{"capture":"own.vcd","against":"turn.json","within_us":"20"}]}"#;
+        {"capture":"own.vcd"},{"run":"--trace=x"},{"capture":"own.vcd","against":"turn.json","within_us":"20"},
+        {"capture":"own.vcd","against":"turn.json","channel":16},{"capture":"own.vcd","against":"turn.json","align":1e3},
+        {"name":"","run":"turn.json"}]}"#;
     let folder = folder("mistakes", list);
     let (code, out, err) = check(&folder);
     assert_eq!((code, out.as_str()), (Some(2), ""), "{err}");
@@ -125,6 +123,9 @@ fn a_list_with_mistakes_is_refused_with_all_of_them() {
         "checks[4].against: missing; use the name of a file",
         "checks[5].run: \"--trace=x\" is not valid; use a text that begins with no hyphen",
         "checks[6].within_us: \"20\" is not valid; use a number",
+        "checks[7]: invalid value '16' for '--channel <K>': ",
+        "checks[8]: invalid value '1000.0' for '--align <STEP>': ",
+        "checks[9].name: \"\" is not valid; use a text",
     ] {
         assert!(err.contains(expected), "{expected}: {err}");
     }
@@ -151,25 +152,71 @@ fn passing_checks_end_with_0_and_reports_can_be_printed() {
     assert_eq!((code, out.as_str(), err.as_str()), (Some(0), "passed framed-link\n1 passed, 0 failed\n", ""));
 }
 
+/// Exports a table in the folder, as its user does.
+fn export(folder: &Path, words: &[&str]) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stepscope"));
+    let output = command.current_dir(folder).arg("tables").args(words).output().expect("it starts");
+    assert!(output.status.success(), "{output:?}");
+}
+
 #[test]
-fn a_table_is_made_again_from_its_head() {
-    let folder = folder("table", r#"{"checks":[{"table":"turn.h"}]}"#);
-    let source = folder.join("turn.json").display().to_string();
-    let words = ["tables", &source, "--form", "exact", "--format", "c", "--name", "turn_1"];
-    let (code, table, _) = stepscope(&words, "");
-    assert_eq!(code, Some(0));
-    // The head of the table: the command with the path from the table's folder.
-    let command = "stepscope tables turn.json --form exact --format c --name turn_1";
-    let head = format!("/* Made by {command} */\n");
-    let write = |text: &str| fs::write(folder.join("turn.h"), text).expect("a file");
-    if table.contains("stepscope tables ") {
-        write(&table);
-        assert_eq!(check(&folder).0, Some(0), "{}", check(&folder).1);
-    } else {
-        write(&format!("{head}{table}"));
+fn a_table_is_exported_again_in_the_folder_of_the_list() {
+    let folder = folder("table", r#"{"checks":[{"table":"gen/turn.h"},{"table":"gen/rows.rs"}]}"#);
+    fs::create_dir_all(folder.join("gen")).expect("a folder");
+    fs::copy(folder.join("turn.json"), folder.join("my turn's.json")).expect("a file");
+    fs::write(folder.join("Zähler.csv"), "cycle,dir\n1000,1\n3000,1\n").expect("a file");
+    export(
+        &folder,
+        &["my turn's.json", "--form", "exact", "--format", "c", "--name", "turn_1", "-o", "gen/turn.h"],
+    );
+    export(&folder, &["--steps", "Zähler.csv", "--format", "rust", "-o", "gen/rows.rs"]);
+    let passed =
+        (Some(0), "passed gen/turn.h\npassed gen/rows.rs\n2 passed, 0 failed\n".to_owned(), String::new());
+    assert_eq!(check(&folder), passed);
+    let stored = fs::read_to_string(folder.join("gen/turn.h")).expect("the table");
+    let write = |text: &str| fs::write(folder.join("gen/turn.h"), text).expect("a file");
+    // Another version made the same table.
+    write(&stored.replace(concat!("stepscope ", env!("CARGO_PKG_VERSION"), ":"), "stepscope 0.1.0:"));
+    assert_eq!(check(&folder), passed);
+    let entries = stored.find("_entries[").expect("the entries");
+    let (head, body) = stored.split_at(entries);
+    write(&format!("{head}{}", body.replacen("1U", "2U", 1)));
+    let (code, out, _) = check(&folder);
+    let line = head.lines().count() + 1;
+    let why = format!(
+        "failed gen/turn.h: line {line} differs from the command's current output; export the table again"
+    );
+    assert_eq!((code, out.lines().next()), (Some(3), Some(why.as_str())));
+}
+
+#[test]
+fn a_table_is_compared_with_another_scenario() {
+    let list =
+        r#"{"checks":[{"table":"turn.h","run":"renamed.json"},{"table":"turn.h","run":"framed-link"}]}"#;
+    let folder = folder("table-run", list);
+    fs::copy(folder.join("turn.json"), folder.join("renamed.json")).expect("a file");
+    export(&folder, &["turn.json", "--format", "c", "-o", "turn.h"]);
+    let (code, out, err) = check(&folder);
+    assert!(code == Some(3) && out.starts_with("passed turn.h\nfailed turn.h: line "), "{out}{err}");
+}
+
+#[test]
+fn the_head_of_a_table_writes_no_file() {
+    for option in ["--out=stolen", "-ostolen", "--out stolen", "-o stolen", "--with-walker"] {
+        let folder = folder("head", r#"{"checks":[{"table":"turn.h"}]}"#);
+        let head =
+            format!("/* Made by stepscope 0.2.0: stepscope tables turn.json --format c {option}\n */\n");
+        fs::write(folder.join("turn.h"), head).expect("a file");
         let (code, out, _) = check(&folder);
-        assert!(code == Some(3) && out.starts_with("failed turn.h: line 1 differs from the table"), "{out}");
+        assert!(code == Some(2) && out.starts_with("error turn.h: the command of the table has -"), "{out}");
+        assert!(!folder.join("stolen").exists() && !folder.join("stepscope_walk.h").exists(), "{option}");
     }
-    write(&table.replacen("1U", "2U", 1).replace("Made by", "made by"));
-    assert_ne!(check(&folder).0, Some(0));
+}
+
+#[test]
+fn a_name_stays_on_its_line() {
+    let list = r#"{"checks":[{"name":"- a\n::error::x\t\u001b[2J","run":"framed-link"}]}"#;
+    let (code, out, _) = stepscope(&["check", "-"], list);
+    let line = r"passed - a\u{a}::error::x\u{9}\u{1b}[2J";
+    assert_eq!((code, out), (Some(0), format!("{line}\n1 passed, 0 failed\n")));
 }

@@ -15,7 +15,7 @@ use std::{
 };
 
 /// Every block needs one of these: `rustdoc` would compile one without a language as Rust.
-const LANGUAGES: [&str; 6] = ["sh", "text", "json", "rust", "python", "toml"];
+const LANGUAGES: [&str; 7] = ["sh", "text", "json", "rust", "python", "toml", "c"];
 const EXIT_CODE: &str = "# exit code ";
 
 #[derive(Debug, PartialEq)]

@@ -53,14 +53,17 @@ pub(crate) async fn make(Options { target, out }: Options) -> Result<()> {
     };
     toolchain::target(&target).await?;
     let program = build(&target).await?;
-    let name = format!("stepscope-{}-{target}", env!("CARGO_PKG_VERSION"));
-    let archive = archive(&name, &contents(&program, &target).await?)?;
+    // Manual pages and the like are written by a program that runs here.
+    let host = toolchain::host().await?;
+    let writer = if runs_on(&target, &host) { program.clone() } else { build(&host).await? };
+    let name = archive_name(&target);
+    let archive = archive(&name, &contents(&program, &writer, &target).await?)?;
     files::create_folder(&out)?;
     let file = format!("{name}.tar.gz");
     files::write(&out.join(&file), &archive)?;
     // Archives of other targets are made on other machines, and are listed, too.
-    let sums =
-        with_sum(&std::fs::read_to_string(out.join("SHA256SUMS")).unwrap_or_default(), &file, &archive);
+    let sums = std::fs::read_to_string(out.join("SHA256SUMS")).unwrap_or_default();
+    let sums = with_sum(&sums, &file, &archive, |other| out.join(other).exists());
     files::write(&out.join("SHA256SUMS"), &sums)?;
     println!("{}\n{}", out.join(&file).display(), out.join("SHA256SUMS").display());
     Ok(())
@@ -69,6 +72,16 @@ pub(crate) async fn make(Options { target, out }: Options) -> Result<()> {
 /// On Linux the target without a C library of the system, so that any distribution runs it.
 fn default_target(host: &str) -> String {
     host.replace("-linux-gnu", "-linux-musl")
+}
+
+/// As `action.sh` looks for it.
+fn archive_name(target: &str) -> String {
+    format!("stepscope-{}-{target}", env!("CARGO_PKG_VERSION"))
+}
+
+/// Whether the host runs programs of this target.
+fn runs_on(target: &str, host: &str) -> bool {
+    default_target(target) == default_target(host)
 }
 
 async fn build(target: &str) -> Result<PathBuf> {
@@ -112,7 +125,7 @@ fn remapped(cargo_home: &Path) -> OsString {
     flags
 }
 
-async fn contents(program: &Path, target: &str) -> Result<Vec<Packed>> {
+async fn contents(program: &Path, writer: &Path, target: &str) -> Result<Vec<Packed>> {
     let name = program.file_name().context("the program has no name")?.to_string_lossy().into_owned();
     let text = |path: String, bytes: Vec<u8>| Packed { path, bytes, is_program: false };
     let mut packed =
@@ -125,7 +138,7 @@ async fn contents(program: &Path, target: &str) -> Result<Vec<Packed>> {
     let folder = tempfile::tempdir().context("no temporary folder can be created")?;
     let manual = folder.path().join("man1");
     let written = |words: &[&str], last: &Path| {
-        let mut command = Command::new(program);
+        let mut command = Command::new(writer);
         command.args(words).arg(last);
         run::to_end(command)
     };
@@ -165,11 +178,13 @@ fn archive(name: &str, packed: &[Packed]) -> Result<Vec<u8>> {
     gz.write_all(&bytes).and_then(|()| gz.finish()).context("the archive can't be compressed")
 }
 
-/// The list of sums, as `sha256sum -c` reads it, with this file's.
-fn with_sum(sums: &str, file: &str, bytes: &[u8]) -> String {
+/// The list of sums, as `sha256sum -c` reads it, with this file's; of other files, those of this version that exist.
+fn with_sum(sums: &str, file: &str, bytes: &[u8], exists: impl Fn(&str) -> bool) -> String {
     let mut digits = String::new();
     Sha256::digest(bytes).iter().for_each(|byte| _ = write!(digits, "{byte:02x}"));
-    let is_other = |line: &&str| line.split_once("  ").is_some_and(|(_, name)| name != file);
+    let version = archive_name("");
+    let is_kept = |name: &str| name != file && name.starts_with(&version) && exists(name);
+    let is_other = |line: &&str| line.split_once("  ").is_some_and(|(_, name)| is_kept(name));
     let mut lines: Vec<String> = sums.lines().filter(is_other).map(str::to_owned).collect();
     lines.push(format!("{digits}  {file}"));
     lines.sort_by(|one, other| one.get(64..).cmp(&other.get(64..)));
@@ -208,17 +223,59 @@ mod tests {
     }
 
     #[test]
-    fn sums_keep_the_archives_of_other_targets() {
+    fn sums_are_those_of_existing_archives_of_this_version() {
         let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        let first = with_sum("", "b.tar.gz", b"other");
-        let both = with_sum(&first, "a.tar.gz", b"abc");
-        assert!(both.starts_with(&format!("{abc}  a.tar.gz\n")) && both.ends_with(&first), "{both}");
-        assert_eq!(with_sum(&both, "a.tar.gz", b"abc"), both);
+        let [a, b] = ["a", "b"].map(|target| archive_name(target) + ".tar.gz");
+        let first = with_sum("", &b, b"other", |_| false);
+        let both = with_sum(&first, &a, b"abc", |_| true);
+        assert!(both.starts_with(&format!("{abc}  {a}\n")) && both.ends_with(&first), "{both}");
+        assert_eq!(with_sum(&both, &a, b"abc", |_| true), both);
+        let with_old = format!("{both}{abc}  stepscope-0.0.1-a.tar.gz\n");
+        assert_eq!(with_sum(&with_old, &a, b"abc", |_| true), both);
+        assert_eq!(with_sum(&both, &b, b"other", |name| name != a), first);
     }
 
     #[test]
     fn linux_releases_are_static() {
         assert_eq!(default_target("x86_64-unknown-linux-gnu"), "x86_64-unknown-linux-musl");
         assert_eq!(default_target("aarch64-apple-darwin"), "aarch64-apple-darwin");
+    }
+
+    #[test]
+    fn a_foreign_program_is_not_run() {
+        let host = "x86_64-unknown-linux-gnu";
+        assert!(runs_on(host, host) && runs_on("x86_64-unknown-linux-musl", host));
+        assert!(!runs_on("aarch64-unknown-linux-musl", host) && !runs_on("x86_64-apple-darwin", host));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_action_fetches_an_archive_of_a_release() {
+        let folder = tempfile::tempdir().unwrap();
+        let tag = concat!("v", env!("CARGO_PKG_VERSION"));
+        let release = folder.path().join(tag);
+        std::fs::create_dir(&release).unwrap();
+        let (name, script) =
+            (archive_name("x86_64-unknown-linux-musl"), "#!/bin/sh\necho \"called with $*\"\n");
+        let bytes = archive(&name, &[packed("bin/stepscope", script, true)]).unwrap();
+        let file = name + ".tar.gz";
+        std::fs::write(release.join(&file), &bytes).unwrap();
+        std::fs::write(release.join("SHA256SUMS"), with_sum("", &file, &bytes, |_| true)).unwrap();
+        let mut command = std::process::Command::new("bash");
+        command.arg(root().join("action.sh")).current_dir(folder.path());
+        command.envs([
+            ("CHECKS", "list.json"),
+            ("VERSION", tag),
+            ("REPORT", "report"),
+            ("ACTION_PATH", "none"),
+        ]);
+        command.envs([("RUNNER_OS", "Linux"), ("RUNNER_ARCH", "X64"), ("GITHUB_OUTPUT", "")]);
+        command
+            .env("RELEASES", format!("file://{}", folder.path().display()))
+            .env("RUNNER_TEMP", folder.path());
+        let output = command.env("GITHUB_STEP_SUMMARY", "").output().unwrap();
+        let expected = "called with check list.json --junit report/junit.xml --summary report/summary.md\n";
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), expected, "{:?}", output.stderr);
+        assert!(output.status.success());
     }
 }

@@ -1,13 +1,12 @@
 //! The entries of a list of checks, and the command lines that make them.
 
 use crate::{failure::Failure, suggest};
+use clap::CommandFactory;
 use serde_json::{Map, Value};
 use std::path::Path;
 
 /// Maximum number of checks of a file.
 const MAX_CHECKS: usize = 10_000;
-/// The command in the head of a table.
-const TABLE_COMMAND: &str = "stepscope tables ";
 
 pub(super) struct Entry {
     pub(super) name: String,
@@ -61,34 +60,6 @@ impl Entry {
     }
 }
 
-/// The words of the command in a table's head, without its output; `scenario` replaces its first argument.
-pub(super) fn words_of_table(table: &str, scenario: Option<&str>) -> Option<Vec<String>> {
-    let line = table.lines().take(20).find_map(|line| line.split_once(TABLE_COMMAND))?.1;
-    let mut given = line.trim_end().trim_end_matches("*/").split_whitespace();
-    let mut words = vec!["tables".to_owned()];
-    while let Some(word) = given.next() {
-        match word {
-            "-o" | "--out" => drop(given.next()),
-            word => words.push(word.to_owned()),
-        }
-    }
-    if let (Some(scenario), Some(first)) = (scenario, words.get_mut(1).filter(|word| !word.starts_with('-')))
-    {
-        *first = scenario.to_owned();
-    }
-    Some(words)
-}
-
-/// From 1; line ends of another system are the same.
-pub(super) fn first_different_line(expected: &str, found: &str) -> Option<usize> {
-    let (mut expected, mut found) = (expected.lines(), found.lines());
-    (1..).find_map(|line| match (expected.next(), found.next()) {
-        (None, None) => Some(None),
-        (expected, found) if expected != found => Some(Some(line)),
-        _ => None,
-    })?
-}
-
 /// Reads a list of checks.
 ///
 /// # Errors
@@ -107,8 +78,10 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Vec<Entry>, Failure> {
         return Err(wrong(format!("{} checks; use 1 to {MAX_CHECKS}", list.len())));
     }
     let (mut entries, mut problems) = (Vec::new(), Vec::new());
+    let mut command = crate::Arguments::command();
     for (index, value) in list.iter().enumerate() {
-        let mut reader = Reader { path: format!("checks[{index}]"), problems: &mut problems };
+        let mut reader =
+            Reader { path: format!("checks[{index}]"), problems: &mut problems, command: &mut command };
         entries.extend(reader.entry(value));
     }
     if problems.is_empty() { Ok(entries) } else { Err(wrong(problems.join("\n  "))) }
@@ -122,6 +95,7 @@ const TABLE: &[&str] = &["name", "table", "run"];
 struct Reader<'p> {
     path: String,
     problems: &'p mut Vec<String>,
+    command: &'p mut clap::Command,
 }
 
 impl Reader<'_> {
@@ -136,6 +110,17 @@ impl Reader<'_> {
             Value::String(text) if !text.is_empty() && !text.starts_with('-') => Some(text.clone()),
             other => {
                 self.note(field, &format!("{other} is not valid; use a text that begins with no hyphen"));
+                None
+            }
+        }
+    }
+
+    /// A name is no word of a command line, so that it may begin with a hyphen.
+    fn name(&mut self, object: &Map<String, Value>) -> Option<String> {
+        match object.get("name")? {
+            Value::String(text) if !text.is_empty() => Some(text.clone()),
+            other => {
+                self.note("name", &format!("{other} is not valid; use a text"));
                 None
             }
         }
@@ -158,6 +143,17 @@ impl Reader<'_> {
         }
     }
 
+    /// Notes the options that the command itself refuses, such as a number that is out of range.
+    fn check_words(&mut self, words: &[String]) {
+        let words = ["stepscope"].into_iter().chain(words.iter().map(String::as_str));
+        if let Err(error) = self.command.try_get_matches_from_mut(words) {
+            let text = error.to_string();
+            let lines = text.lines().map(str::trim).take_while(|line| !line.is_empty());
+            let text = lines.collect::<Vec<_>>().join("; ");
+            self.note("", text.strip_prefix("error: ").unwrap_or(&text));
+        }
+    }
+
     fn entry(&mut self, value: &Value) -> Option<Entry> {
         let before = self.problems.len();
         let Value::Object(object) = value else {
@@ -177,7 +173,7 @@ impl Reader<'_> {
             let hint = suggest::hint(name, fields.iter().copied());
             self.note(name, &format!("unknown field{hint}; use one of {}", fields.join(", ")));
         }
-        let (name, driver) = (self.text(object, "name"), self.text(object, "driver"));
+        let (name, driver) = (self.name(object), self.text(object, "driver"));
         let kind = if fields == CAPTURE {
             let file = self.required(object, "capture")?;
             let against = self.required(object, "against")?;
@@ -189,6 +185,9 @@ impl Reader<'_> {
             Kind::Run { scenario, digest: self.digest(object) }
         };
         let entry = Entry { name: String::new(), driver, kind };
+        if fields == CAPTURE {
+            self.check_words(&entry.capture_words(false));
+        }
         let name = name.unwrap_or_else(|| entry.file().to_owned());
         (self.problems.len() == before).then_some(Entry { name, ..entry })
     }
@@ -215,32 +214,5 @@ impl Reader<'_> {
             self.note("digest", &format!("{digest} is not a digest; use 16 digits of 0-9 and a-f"));
         }
         Some(digest)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_table_is_made_again_with_the_words_of_its_head() {
-        let table = "/* turn: 3200 steps.\n * Made by stepscope 0.2.0: stepscope tables turn.json --form exact -o turn.h --name turn */\n";
-        let words = words_of_table(table, None).expect("a command");
-        assert_eq!(words, ["tables", "turn.json", "--form", "exact", "--name", "turn"]);
-        let words = words_of_table(table, Some("other.json")).expect("a command");
-        assert_eq!(words[1], "other.json");
-        assert_eq!(words_of_table("cycle,dir\n1,1\n", None), None);
-    }
-
-    #[test]
-    fn lines_are_compared_without_their_ends() {
-        for (expected, found, line) in [
-            ("a\nb\n", "a\r\nb\r\n", None),
-            ("a\nb\n", "a\nc\n", Some(2)),
-            ("a\n", "a\nb\n", Some(2)),
-            ("", "", None),
-        ] {
-            assert_eq!(first_different_line(expected, found), line, "{expected:?} {found:?}");
-        }
     }
 }

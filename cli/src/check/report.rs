@@ -1,7 +1,7 @@
 //! The results of checks: lines, JUnit XML, Markdown.
 
 use super::entry::Entry;
-use crate::{failure::Failure, output::Out};
+use crate::{failure::Failure, output::Out, terminal::Escaped};
 use std::fmt;
 use std::io::{self, Write};
 
@@ -53,9 +53,10 @@ impl Outcome {
 
 impl fmt::Display for CheckResult<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.outcome.word(), self.entry.name)?;
+        // A line feed in a name could begin a command to the runner.
+        write!(f, "{} {}", self.outcome.word(), Escaped(&self.entry.name))?;
         let why = self.outcome.why();
-        if why.is_empty() { Ok(()) } else { write!(f, ": {why}") }
+        if why.is_empty() { Ok(()) } else { write!(f, ": {}", Escaped(why)) }
     }
 }
 

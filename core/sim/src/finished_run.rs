@@ -12,7 +12,7 @@ use crate::summary::{ControllerSummary, Summary};
 use crate::{Experiment, Run};
 use alloc::vec::Vec;
 use core::ops::Deref;
-use stepscope_motion::ScheduledStep;
+use stepscope_motion::{AxisPlan, ScheduledStep};
 use stepscope_peripheral::device::Faults;
 use stepscope_peripheral::signal::{Record, Sink};
 use stepscope_peripheral::trace::{Digest, Step, steps};
@@ -49,7 +49,8 @@ pub fn run(scenario: &Scenario) -> Result<FinishedRun, Problems> {
 /// The steps of an axis as planned, with cycles of the scenario's clock from the start of the motion. `axis` counts from 0.
 ///
 /// # Errors
-/// All problems of the scenario, a source without planned axes, and an axis that does not exist.
+/// All problems of the scenario, a source without planned axes, an axis that does not exist, and too many steps for
+/// [`planned_steps`].
 pub fn step_times(scenario: &Scenario, axis: usize) -> Result<Vec<ScheduledStep>, Problems> {
     let experiment = Experiment::new(scenario)?;
     let plans = experiment.plans();
@@ -62,7 +63,19 @@ pub fn step_times(scenario: &Scenario, axis: usize) -> Result<Vec<ScheduledStep>
         let cause = ValueError::Range { given: axis as f64, min: 0.0, max: last as f64, unit: "" };
         Problem::new("axis", cause)
     })?;
-    Ok(plan.due_steps(scenario.clock_hz).collect())
+    planned_steps(plan, scenario.clock_hz)
+}
+
+/// The steps of a plan, in cycles at `clock_hz` from the start of the motion.
+///
+/// # Errors
+/// More steps than a stored run may have: half of [`MAX_RECORDS`].
+pub fn planned_steps(plan: &AxisPlan, clock_hz: u32) -> Result<Vec<ScheduledStep>, Problems> {
+    if plan.step_count() > MAX_RECORDS / 2 {
+        let detail = "the axis has more than 24000000 planned steps; use a shorter motion";
+        return Err(Problem::new("source", ValueError::Conflict { detail }).into());
+    }
+    Ok(plan.due_steps(clock_hz).collect())
 }
 
 fn run_within(experiment: &Experiment, max_records: u64) -> Result<FinishedRun, Problems> {
@@ -216,6 +229,14 @@ mod tests {
             step_times(&scenario(r#"{"source":{"packets":{"packets":["83"]}}}"#), 0).err(),
             "source: only a motion has planned steps; use a source of kind motion, or the steps of a run",
         );
+    }
+
+    #[test]
+    fn the_number_of_planned_steps_is_limited() {
+        let json = r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":24000001},"speed":{"steps_s":40000}}}]}]}}}"#;
+        let expected = "source: the axis has more than 24000000 planned steps; use a shorter motion";
+        assert_eq!(step_times(&scenario(json), 0).expect_err("too many").to_string(), expected);
+        assert!(expected.contains(&(MAX_RECORDS / 2).to_string()));
     }
 
     #[test]

@@ -11,7 +11,7 @@ mod rust;
 mod source;
 
 pub use name::check_name;
-pub use origin::{Origin, Request, quoted};
+pub use origin::{Origin, Request, quoted, unquoted};
 pub use read::{WrittenTable, first_axis, read_c};
 pub use source::{Language, NamedTable, Source, WALKER_FILE};
 

@@ -115,9 +115,8 @@ impl Request<'_> {
 /// assert_eq!(quoted(b"*/\n"), r"$'*\057\012'");
 /// ```
 pub fn quoted(word: &[u8]) -> String {
-    let is_plain = |byte: &u8| byte.is_ascii_alphanumeric() || b"_./:=@%+,-".contains(byte);
     let mut text = String::new();
-    if !word.is_empty() && word.iter().all(is_plain) {
+    if !word.is_empty() && word.iter().copied().all(is_plain) {
         text.extend(word.iter().map(|byte| char::from(*byte)));
         return text;
     }
@@ -138,4 +137,61 @@ pub fn quoted(word: &[u8]) -> String {
     }
     text.push('\'');
     text
+}
+
+fn is_plain(byte: u8) -> bool {
+    byte.is_ascii_alphanumeric() || b"_./:=@%+,-".contains(&byte)
+}
+
+/// The words of a line of [`quoted`] words with spaces between them, as bytes. `None` for any other line.
+///
+/// ```
+/// use stepscope_inspect::export::source_code::unquoted;
+///
+/// let words = unquoted(r"tables 'a turn'\''s.json' $'*\057'").unwrap();
+/// assert_eq!(words, [&b"tables"[..], b"a turn's.json", b"*/"]);
+/// assert_eq!(unquoted("tables turn.json > turn.h"), None);
+/// ```
+pub fn unquoted(line: &str) -> Option<Vec<Vec<u8>>> {
+    let (mut words, mut word) = (Vec::new(), None);
+    let mut bytes = line.bytes();
+    while let Some(byte) = bytes.next() {
+        if byte == b' ' {
+            words.extend(word.take());
+            continue;
+        }
+        let word: &mut Vec<u8> = word.get_or_insert_default();
+        match byte {
+            b'\'' => loop {
+                match bytes.next()? {
+                    b'\'' => break,
+                    byte => word.push(byte),
+                }
+            },
+            b'$' if bytes.next()? == b'\'' => loop {
+                match bytes.next()? {
+                    b'\'' => break,
+                    b'\\' => word.push(escaped(&mut bytes)?),
+                    byte => word.push(byte),
+                }
+            },
+            b'\\' if bytes.next()? == b'\'' => word.push(b'\''),
+            byte if is_plain(byte) => word.push(byte),
+            _ => return None,
+        }
+    }
+    words.extend(word);
+    Some(words)
+}
+
+/// The byte after a backslash: a quote, a backslash, or three octal digits.
+fn escaped(bytes: &mut impl Iterator<Item = u8>) -> Option<u8> {
+    let digit = |byte: u8| matches!(byte, b'0'..=b'7').then(|| byte - b'0');
+    match bytes.next()? {
+        byte @ (b'\'' | b'\\') => Some(byte),
+        byte => {
+            let [high, middle, low] = [digit(byte)?, digit(bytes.next()?)?, digit(bytes.next()?)?];
+            high.checked_mul(64)?.checked_add(8 * middle + low)
+        }
+    }
 }

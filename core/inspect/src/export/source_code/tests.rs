@@ -130,6 +130,38 @@ fn no_path_ends_the_comment_or_the_line() {
 }
 
 #[test]
+fn quoted_words_are_read_back() {
+    let mut words: Vec<Vec<u8>> = [
+        "turn.json",
+        "a turn's.json",
+        "",
+        "*/ int main",
+        "/*",
+        "two\nlines\\",
+        "\u{2028}",
+        "Zähler µ",
+        "$'",
+        "''",
+        "-o",
+    ]
+    .map(|word| word.as_bytes().to_vec())
+    .into();
+    words
+        .extend((0..=u8::MAX).flat_map(|byte| [vec![byte], vec![b'*', byte, b'/'], vec![byte, b'7', b'\'']]));
+    for word in &words {
+        assert_eq!(unquoted(&quoted(word)).as_ref(), Some(&vec![word.clone()]), "{}", quoted(word));
+    }
+    let line: Vec<String> = words.iter().map(|word| quoted(word)).collect();
+    assert_eq!(unquoted(&line.join(" ")), Some(words));
+    assert_eq!(unquoted(" turn.json  turn.h "), Some(vec![b"turn.json".to_vec(), b"turn.h".to_vec()]));
+    for other in
+        ["'open", "$'open", "$'\\", "$'\\400'", "$'\\08'", "$HOME", "a;b", "a*", "\\a", "\"a\"", "ä", "a\tb"]
+    {
+        assert_eq!(unquoted(other), None, "{other}");
+    }
+}
+
+#[test]
 fn a_written_table_is_read_back() {
     for format in EntryFormat::ALL {
         let entries = vec![
