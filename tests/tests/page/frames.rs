@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// Height of a row, and of a signal in it, in pixels.
-const ROW_PX: usize = 19;
+const ROW_PX: usize = 22;
 /// Width of the labels' column and of the free space at the right.
 const BESIDE_PX: usize = 68 + 26;
 /// Rows of one unfolded channel on a raw line, and the bits of those that are signals but EN, which is the chosen one.
@@ -39,7 +39,7 @@ const READ: &str = "
         return Array.from({ length: canvas.width - beside }, (_, x) => data[4 * x + 3] > 100 ? '#' : '.').join('');
     };
     const top = row * height + 4;
-    return { top: line(top), middle: line(top + 6), bottom: line(top + 12) };";
+    return { top: line(top), middle: line(top + 7), bottom: line(top + 15) };";
 
 /// What the row must look like by the levels of its columns: a bar where it was high and low, a line where it was
 /// one of them, and an edge in the first column of another level.

@@ -153,7 +153,11 @@ async fn inspected(page: &Session, known: &Known, rows: usize) -> Result<()> {
             .map(|field| {
                 let (first, last) = (field.bytes.start, field.bytes.end - 1);
                 let range = if first == last { first.to_string() } else { format!("{first}\u{2013}{last}") };
-                format!("{} {} [{range}]", field.name, field.value)
+                // Longer layouts explain their bits only at the pointer.
+                let explained = if fields.len() <= 24 { field.bits.as_slice() } else { &[] };
+                let bits =
+                    explained.iter().map(|bits| format!("{} {} {}", bits.levels, bits.name, bits.value));
+                format!("{} {} [{range}]{}", field.name, field.value, bits.collect::<String>())
             })
             .collect();
         assert_eq!(told, expected, "row {index}");

@@ -1,7 +1,7 @@
 use super::*;
+use alloc::{string::String, vec, vec::Vec};
 use stepscope_motion::ScheduledStep;
 use stepscope_motion::step_tables::{Entry, EntryFormat, Stored, TimingError};
-use stepscope_motion::step_tables::{Entry, Stored};
 use stepscope_peripheral::{segment::SegmentList, units::Instant};
 use stepscope_scenario::Scenario;
 
