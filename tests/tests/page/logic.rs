@@ -38,7 +38,7 @@ async fn point(page: &Session, known: &Known, row: usize, cycle: u64, press: boo
     let (left, top, width): (f64, f64, f64) = page.eval(place).await?;
     let end = known.experiment.run(&mut Digest::default()).cycles().0;
     let x = (left + 68.0 + (width - 94.0) * cycle as f64 / end as f64).round();
-    let y = top + 19.0 * row as f64 + 10.0;
+    let y = top + 22.0 * row as f64 + 11.0;
     let mouse = MouseActions::new("mouse".into()).then(PointerAction::MoveTo { duration: None, x, y });
     if !press {
         return page.actions(mouse).await;

@@ -140,6 +140,6 @@ export function chartOf(state, data, quantity) {
 function whyNoAcceleration({ has_ideal, speed_max, speed_min, actual_speed_max, actual_speed_min }) {
   const speeds = has_ideal ? [speed_min, speed_max] : [actual_speed_min, actual_speed_max];
   return speeds.some((values) => values.some((value) => Math.abs(value) > 0))
-    ? "stepwise, so without acceleration"
+    ? "stepwise"
     : "";
 }
