@@ -82,7 +82,7 @@ fn a_failed_check_is_an_annotation_and_its_exit_code() {
 }
 
 #[test]
-fn a_wrong_list_is_an_annotation_and_leaves_no_report() {
+fn an_invalid_list_is_an_annotation_and_writes_no_report() {
     let folder = folder("wrong", r#"{"checks":[{"run":"x","digest":"50 %"}]}"#);
     fs::create_dir_all(folder.join("project/report")).expect("a folder");
     for (name, text) in [("junit.xml", "<testcase classname=\"old\""), ("summary.md", "old")] {
@@ -143,7 +143,7 @@ fn without_a_release_the_sources_are_built() {
 }
 
 #[test]
-fn a_damaged_release_is_refused() {
+fn a_damaged_release_is_rejected() {
     let folder = folder("damaged", r#"{"checks":[{"run":"framed-link"}]}"#);
     let archive = folder.join("releases").join(TAG).join(format!("{NAME}.tar.gz"));
     let mut bytes = fs::read(&archive).expect("the release");

@@ -33,7 +33,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 #[test]
-fn steps_are_those_of_the_run_or_of_the_plan() {
+fn steps_come_from_the_run_or_the_plan() {
     let scenario: Scenario = MOTION.parse().expect("it reads");
     let run = run(&scenario).expect("it runs");
     for axis in [0_u8, 1] {
@@ -93,7 +93,7 @@ fn numpy_reads_the_same_steps() {
 }
 
 #[test]
-fn a_curve_is_the_plan_at_even_times() {
+fn a_curve_samples_the_plan_at_equal_intervals() {
     let experiment = sim::Experiment::from_json(MOTION).expect("it runs");
     let plan = &experiment.plans()[1];
     let (head, rows) = table(&printed(&["curve", "-", "--axis", "1", "--points", "11"], MOTION));
@@ -111,7 +111,7 @@ fn a_curve_is_the_plan_at_even_times() {
 }
 
 #[test]
-fn a_spectrum_has_the_distortion_of_measures() {
+fn spectrum_and_measures_agree_on_distortion() {
     let measures = json(&["measures", "-", "--axis", "1"], MOTION);
     for of in ["ideal", "pulses"] {
         let spectrum = json(&["spectrum", "-", "--axis", "1", "--of", of], MOTION);
@@ -130,7 +130,7 @@ fn a_spectrum_has_the_distortion_of_measures() {
 }
 
 #[test]
-fn an_axis_without_a_plan_or_a_motion_is_refused() {
+fn an_axis_without_a_plan_or_a_motion_is_rejected() {
     let packets = r#"{"source":{"packets":{"packets":["83"]}}}"#;
     let idle = r#"{"source":{"packets":{"packets":["00"]}}}"#;
     let rows: &[(&[&str], &str, &str)] = &[
@@ -159,7 +159,7 @@ fn an_axis_without_a_plan_or_a_motion_is_refused() {
 }
 
 #[test]
-fn the_schema_is_json_of_its_draft() {
+fn the_schema_is_valid_for_its_json_schema_draft() {
     let schema: Value = serde_json::from_str(&printed(&["schema"], "")).expect("JSON");
     assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
     assert_eq!(schema["$defs"]["Bus"]["properties"]["slots"]["maximum"], 127);

@@ -37,7 +37,7 @@ const DIFFERING: &str = r#"{ "checks": [
     { "name": "edges", "run": "turn.json", "digest": "4403b749346a0bd0" } ] }"#;
 
 #[test]
-fn differences_have_a_line_and_a_place_in_both_reports() {
+fn differences_have_a_line_and_a_location_in_both_reports() {
     let folder = folder("differing", DIFFERING);
     let (code, out, err) = check(&folder);
     assert_eq!((code, err.as_str()), (Some(3), "2 checks failed\n"), "{out}");
@@ -75,7 +75,7 @@ fn differences_have_a_line_and_a_place_in_both_reports() {
 }
 
 #[test]
-fn checks_that_cannot_be_made_are_errors() {
+fn checks_that_cannot_run_are_errors() {
     for (list, expected_code, line) in [
         (
             r#"{"checks":[{"run":"missing.json"},{"run":"turn.json"}]}"#,
@@ -107,7 +107,7 @@ fn checks_that_cannot_be_made_are_errors() {
 }
 
 #[test]
-fn a_list_with_mistakes_is_refused_with_all_of_them() {
+fn all_mistakes_of_a_list_are_reported_together() {
     let list = r#"{"checks":[5,{},{"run":"turn.json","digets":"x"},{"run":"turn.json","digest":"ABC"},
         {"capture":"own.vcd"},{"run":"--trace=x"},{"capture":"own.vcd","against":"turn.json","within_us":"20"},
         {"capture":"own.vcd","against":"turn.json","channel":16},{"capture":"own.vcd","against":"turn.json","align":1e3},
@@ -160,7 +160,7 @@ fn export(folder: &Path, words: &[&str]) {
 }
 
 #[test]
-fn a_table_is_exported_again_in_the_folder_of_the_list() {
+fn table_commands_run_in_the_folder_of_the_list() {
     let folder = folder("table", r#"{"checks":[{"table":"gen/turn.h"},{"table":"gen/rows.rs"}]}"#);
     fs::create_dir_all(folder.join("gen")).expect("a folder");
     fs::copy(folder.join("turn.json"), folder.join("my turn's.json")).expect("a file");
@@ -201,7 +201,7 @@ fn a_table_is_compared_with_another_scenario() {
 }
 
 #[test]
-fn the_head_of_a_table_writes_no_file() {
+fn the_command_in_a_tables_header_writes_no_file() {
     for option in ["--out=stolen", "-ostolen", "--out stolen", "-o stolen", "--with-walker"] {
         let folder = folder("head", r#"{"checks":[{"table":"turn.h"}]}"#);
         let head =
@@ -214,7 +214,7 @@ fn the_head_of_a_table_writes_no_file() {
 }
 
 #[test]
-fn a_name_stays_on_its_line() {
+fn a_line_break_in_a_name_is_escaped() {
     let list = r#"{"checks":[{"name":"- a\n::error::x\t\u001b[2J","run":"framed-link"}]}"#;
     let (code, out, _) = stepscope(&["check", "-"], list);
     let line = r"passed - a\u{a}::error::x\u{9}\u{1b}[2J";

@@ -168,7 +168,7 @@ fn every_command_of_the_documentation_runs_as_printed() {
 }
 
 #[test]
-fn a_page_that_does_not_run_as_printed_is_reported() {
+fn a_page_with_a_failing_command_is_reported() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     for (page, expected) in [
         ("```sh\nstepscope presets\n```\n", ""),

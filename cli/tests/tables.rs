@@ -150,7 +150,7 @@ fn writes_tables_in_each_language() {
 /// The table and its walker, and the command of the table's head: run in a shell, it makes the same file.
 #[cfg(unix)]
 #[test]
-fn a_table_names_the_command_that_makes_it_again() {
+fn a_table_states_the_command_that_reproduces_it() {
     use std::{
         env, fs,
         path::{Path, PathBuf},
@@ -197,7 +197,7 @@ fn a_table_names_the_command_that_makes_it_again() {
 
 #[cfg(unix)]
 #[test]
-fn the_walker_is_written_next_to_the_table_or_alone() {
+fn the_walker_is_written_with_or_without_a_table() {
     use std::{env, fs, path::PathBuf};
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("tables-walker");
     fs::create_dir_all(&folder).expect("a folder");
@@ -337,7 +337,7 @@ fn explains_why_there_is_no_table() {
 }
 
 #[test]
-fn refuses_options_without_effect() {
+fn rejects_options_without_effect() {
     let rows: [(&[&str], &str); 9] = [
         (&["--form", "exact", "--error-us", "9"], "--error-us: only a compressed table"),
         (&["--format", "c", "--interval-part", "2"], "--interval-part: only a compressed table"),

@@ -31,7 +31,7 @@ fn table_of(experiment: &Experiment, run: &Run, recording: &StoredRun) -> String
 
 /// Where bytes follow one another without pauses and nothing disturbs the line, the table holds all.
 #[test]
-fn a_table_of_packets_sent_again_gives_the_same_trace() {
+fn a_packet_table_reproduces_the_trace() {
     for id in ["song-2021-plateau", "patent-2019-sixteen-motors", "patent-2019-addressed"] {
         let preset = PRESETS.iter().find(|preset| preset.id == id).expect(id);
         let scenario = preset.scenario();
@@ -45,7 +45,7 @@ fn a_table_of_packets_sent_again_gives_the_same_trace() {
 
 /// Replies of other controllers are heard like frames; they are none of the host's, however noise spoils them.
 #[test]
-fn a_table_of_a_shared_framed_line_has_the_hosts_sends_and_nothing_else() {
+fn a_packet_table_of_a_shared_line_has_only_the_hosts_sends() {
     let preset = PRESETS.iter().find(|preset| preset.id == "four-controllers-framed").expect("a preset");
     let mut scenario = preset.scenario();
     for (seed, flipped_bits_ppm) in [(0, 0), (3, 300), (4, 1000)] {
@@ -73,7 +73,7 @@ fn a_table_of_a_shared_framed_line_has_the_hosts_sends_and_nothing_else() {
 }
 
 #[test]
-fn every_presets_own_table_of_edges_is_the_same_as_its_run() {
+fn the_edge_table_of_every_preset_equals_its_run() {
     for preset in PRESETS {
         let (experiment, _, recording) = recorded(&preset.scenario());
         let config = experiment.config();

@@ -19,7 +19,7 @@ fn run(sweep: &FaultSweep, seeds: u32) -> Tally {
 }
 
 #[test]
-fn framed_ticks_are_executed_once_and_as_ordered_whatever_the_line_does() {
+fn framed_ticks_are_executed_exactly_once_despite_line_faults() {
     let sweep = sweep(Protocol::Framed);
     let tally = run(&sweep, 300);
     assert_eq!((tally.seeds, tally.wrong_seeds, tally.is_wrong()), (300, 0, false), "{tally:?}");
@@ -43,7 +43,7 @@ fn framed_ticks_are_executed_once_and_as_ordered_whatever_the_line_does() {
 }
 
 #[test]
-fn raw_packets_are_executed_wrong_or_not_at_all() {
+fn raw_packets_are_lost_or_corrupted_by_line_faults() {
     let tally = run(&sweep(Protocol::Raw), 100);
     assert_eq!((tally.repeated, tally.replies, tally.unreached), (0, 0, 0));
     for count in [tally.wrong_seeds, tally.wrong, tally.wrong_steps, tally.missing, tally.position_error] {
@@ -52,7 +52,7 @@ fn raw_packets_are_executed_wrong_or_not_at_all() {
 }
 
 #[test]
-fn a_line_without_faults_does_what_is_ordered_with_both_protocols() {
+fn a_line_without_faults_executes_all_ticks_in_both_protocols() {
     let quiet = |protocol| {
         let sweep = sweep(protocol);
         let is_quiet = |scenario: &Scenario| {
@@ -71,7 +71,7 @@ fn a_line_without_faults_does_what_is_ordered_with_both_protocols() {
 
 /// A seed stands for a scenario that anyone can run.
 #[test]
-fn a_seeds_scenario_stands_for_itself() {
+fn a_seeds_scenario_reproduces_itself() {
     let sweep = sweep(Protocol::Framed);
     for seed in 0..50 {
         let scenario = sweep.scenario(seed);
@@ -82,7 +82,7 @@ fn a_seeds_scenario_stands_for_itself() {
 }
 
 #[test]
-fn several_controllers_and_a_line_held_low_cost_repetitions_and_no_step() {
+fn several_controllers_and_a_line_held_low_lose_no_step() {
     let json = r#"{
         "bus": { "channels": 2, "queue_depth": 3 },
         "line": { "baud": 460800, "protocol": "framed", "address": 5, "host": { "attempts": 255 },
@@ -98,7 +98,7 @@ fn several_controllers_and_a_line_held_low_cost_repetitions_and_no_step() {
 }
 
 #[test]
-fn a_base_without_ticks_is_refused() {
+fn a_base_without_ticks_is_rejected() {
     let base = Scenario::from_json(r#"{ "source": { "line": {} } }"#).expect("reads");
     let problems = FaultSweep::new(base).expect_err("there is nothing to go wrong");
     assert_eq!(problems[0].path, "source");

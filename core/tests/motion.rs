@@ -178,7 +178,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn the_end_is_exact_and_the_error_is_never_above_half_a_step(
+    fn the_end_is_exact_and_errors_are_at_most_half_a_step(
         moves in prop::collection::vec(sane_move(), 1..5), tick_cycles in 2000..4000_u64,
     ) {
         let plan = plan(moves);
@@ -201,7 +201,7 @@ proptest! {
     }
 
     #[test]
-    fn each_step_falls_due_where_the_curve_crosses_its_half_integer(
+    fn steps_are_due_where_the_curve_crosses_half_integers(
         moves in prop::collection::vec(sane_move(), 1..4),
     ) {
         let plan = plan(moves);
@@ -218,7 +218,7 @@ proptest! {
     }
 
     #[test]
-    fn an_exact_list_gives_every_step_in_its_cycle(
+    fn an_exact_table_has_every_step_in_its_cycle(
         moves in prop::collection::vec(sane_move(), 1..4), other in sane_move(),
     ) {
         let plans = [plan(moves), plan(vec![other])];
@@ -249,7 +249,7 @@ proptest! {
     }
 
     #[test]
-    fn a_move_one_way_never_turns_round(
+    fn a_move_in_one_direction_never_reverses(
         given in sane_move().prop_filter("goes one way", |m| !matches!(m, Move::SineSegments(_) | Move::Sine(_) | Move::Points(_))),
         tick_cycles in 300..4000_u64,
     ) {
@@ -281,7 +281,7 @@ proptest! {
     }
 
     #[test]
-    fn steps_are_due_where_the_position_is_rounded_to(
+    fn steps_are_due_where_the_rounded_position_changes(
         moves in prop::collection::vec(sane_move(), 1..4), parts in prop::collection::vec(-0.1..1.1, 1..50),
     ) {
         let plan = plan(moves);

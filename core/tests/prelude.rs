@@ -42,7 +42,7 @@ fn steps_of_an_axis(axis: &Axis) -> Result<Vec<ScheduledStep>, Problems> {
 }
 
 #[test]
-fn problems_of_a_plan_become_those_of_a_scenario() {
+fn plan_problems_become_scenario_problems() {
     let due = stepscope_core::step_times(&Scenario::default(), 0).expect("the default motion");
     assert_eq!(steps_of_an_axis(&Axis::default()), Ok(due));
     let cosine = Cosine { duration_s: -1.0, ..Cosine::default() };
@@ -55,7 +55,7 @@ fn problems_of_a_plan_become_those_of_a_scenario() {
 }
 
 #[test]
-fn problems_are_an_error_with_a_line_each() {
+fn an_error_has_one_line_per_problem() {
     let scenario: Scenario = r#"{"bus":{"slots":200},"clock_hz":3}"#.parse().expect("it reads");
     let problems = run(&scenario);
     let problems: Box<dyn Error + Send + Sync> = problems.expect_err("two numbers are out of range").into();
@@ -71,7 +71,7 @@ fn problems_are_an_error_with_a_line_each() {
 }
 
 #[test]
-fn just_within_is_within() {
+fn a_delay_equal_to_the_tolerance_is_within_it() {
     let step = |cycle, right| ScheduledStep { cycle, right };
     let expected = [step(100, true), step(200, true), step(300, false)];
     let rows: [(&[ScheduledStep], u64, Option<usize>); 8] = [
@@ -92,7 +92,7 @@ fn just_within_is_within() {
 }
 
 #[test]
-fn each_kind_of_list_has_its_own_differences() {
+fn first_differences_of_times_steps_and_records() {
     let (zero, one) = ([Instant(7), Instant(9)], [Instant(7), Instant(12)]);
     assert_eq!(first_difference(&zero, &one, Cycles(2)), Some(1));
     assert_eq!(first_difference(&[7, 9], &[7, 12_u64], Cycles(3)), None);

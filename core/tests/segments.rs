@@ -94,7 +94,7 @@ impl Sink for Slice<'_> {
 
 proptest! {
     #[test]
-    fn every_way_through_an_engine_gives_the_contracts_edges(
+    fn slices_and_speeds_do_not_change_the_edges(
         (pulse, lists) in lists(),
         slice in 1..20_usize,
         hurry in 0..=100_u64,
@@ -155,7 +155,7 @@ proptest! {
 proptest! {
     /// PLANT F7, in every place of a pulse, of a turn and of a list.
     #[test]
-    fn an_overload_lets_all_fall_but_dir_and_no_step_follows(
+    fn an_overload_lowers_all_signals_but_dir_and_ends_the_steps(
         (pulse, lists) in lists(),
         place in any::<prop::sample::Index>(),
         late in 0..=2_u64,
@@ -193,7 +193,7 @@ proptest! {
 }
 
 #[test]
-fn a_segment_of_more_steps_than_a_position_counts_to_is_counted_from_its_begin() {
+fn positions_count_into_a_segment_beyond_31_bits_of_steps() {
     let pulse = PulseTimes { width: Cycles(1), setup: Cycles(0), hold: Cycles(0) };
     let steps =
         |count, right| Segment::Steps { count, interval: pulse.min_interval().0 << 16, add: 0, right };

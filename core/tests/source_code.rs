@@ -181,7 +181,7 @@ fn compare(name: &str, mut compiler: Command, program: &PathBuf, table: &Stored)
 const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
 
 #[test]
-fn compiled_as_c_and_for_avr_a_table_gives_its_steps() {
+fn a_table_compiled_as_c_and_for_avr_has_its_steps() {
     let compiler = env::var("STEPSCOPE_CC").unwrap_or_else(|_| "cc".to_owned());
     assert!(
         Command::new(&compiler).arg("--version").output().is_ok(),
@@ -237,7 +237,7 @@ fn the_walker_is_c99_and_cpp11() {
 }
 
 #[test]
-fn a_table_that_is_read_back_agrees_with_the_plan() {
+fn a_table_read_back_matches_the_plan() {
     for (name, table) in tables() {
         let due = || {
             let mut steps = Vec::new();
@@ -261,7 +261,7 @@ fn a_table_that_is_read_back_agrees_with_the_plan() {
 }
 
 #[test]
-fn compiled_as_rust_a_table_gives_its_steps() {
+fn a_table_compiled_as_rust_has_its_steps() {
     let rustc = env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     for (name, table) in tables() {
         let folder = folder(&format!("{name}_rust"));
@@ -278,7 +278,7 @@ fn compiled_as_rust_a_table_gives_its_steps() {
 }
 
 #[test]
-fn a_csv_table_has_a_row_for_each_entry_and_a_head_says_what_it_is() {
+fn a_csv_table_has_one_row_per_entry_and_a_header() {
     let table = table(Form::Compressed(Tolerance::of(Cycles(400))), EntryFormat::Q8);
     let csv = source(&table, Language::Csv);
     let mut lines = csv.lines();

@@ -33,7 +33,7 @@ fn made_distortion(json: &str) -> (f64, i32) {
 }
 
 #[test]
-fn a_pause_that_is_no_whole_tick_takes_no_pulse_from_the_period_after_it() {
+fn a_pause_of_part_of_a_tick_removes_no_pulse_from_the_period() {
     let sine =
         r#"{"sine_segments":{"amplitude":{"steps":1000},"period_s":0.5,"periods":1,"max_deviation":0.0054}}"#;
     for pause_s in ["0", "0.0011", "0.0013", "0.002"] {
@@ -48,7 +48,7 @@ fn a_pause_that_is_no_whole_tick_takes_no_pulse_from_the_period_after_it() {
 }
 
 #[test]
-fn with_segments_every_step_of_the_sine_counts_whatever_the_ticks_are() {
+fn the_spectrum_of_segments_has_every_step_at_any_tick() {
     let moves = |kind: &str, period_s: &str, periods: u32| {
         let sine = format!(
             r#"{{"{kind}":{{"amplitude":{{"steps":10}},"period_s":{period_s},"periods":{periods}}}}}"#

@@ -80,7 +80,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn no_step_of_a_compressed_list_is_off_by_more_than_was_asked(
+    fn compressed_steps_stay_within_the_tolerance(
         moves in prop::collection::vec(sane_move(), 1..4), tolerance in tolerance(), format in format(),
     ) {
         let plan = plan(moves);
@@ -112,7 +112,7 @@ proptest! {
     }
 
     #[test]
-    fn every_form_has_every_step_and_says_how_far_it_is_off(
+    fn every_form_has_every_step_and_its_timing_error(
         moves in prop::collection::vec(sane_move(), 1..3), format in format(),
     ) {
         let plan = plan(moves);
@@ -137,7 +137,7 @@ proptest! {
     }
 
     #[test]
-    fn nothing_of_a_list_of_due_steps_makes_it_panic(
+    fn no_list_of_due_steps_causes_a_panic(
         gaps in prop::collection::vec((prop_oneof![0..9_u64, 0..1000_u64, any::<u64>().prop_map(|x| x >> 18)], any::<bool>()), 0..60),
         tolerance in tolerance(), format in format(),
     ) {
@@ -228,7 +228,7 @@ fn a_hundred_million_steps_do_not_drift() {
 }
 
 #[test]
-fn a_documents_table_has_its_own_bytes_and_its_own_error() {
+fn tables_of_papers_have_their_sizes_and_errors() {
     let constant = Move::Constant(Constant { distance: Distance::Steps(500.0), speed: steps_s(3000.0) });
     let staircase = Move::Staircase(Staircase {
         distance: Distance::Steps(17_233.0),
@@ -261,7 +261,7 @@ fn a_documents_table_has_its_own_bytes_and_its_own_error() {
 }
 
 #[test]
-fn what_has_no_table_or_no_end_is_refused_with_its_numbers() {
+fn steps_without_a_table_or_an_end_are_rejected() {
     let refused =
         |given: Move, form| stored(&plan(vec![given]), form, EntryFormat::TICKS, PULSE, CLOCK_HZ).err();
     let curve = Move::Cosine(Cosine {

@@ -94,7 +94,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2_000))]
 
     #[test]
-    fn the_check_finds_what_brute_force_finds(
+    fn the_check_agrees_with_brute_force(
         trace in traces(),
         rules in rules(),
         clock_hz in prop_oneof![Just(1_000_000), 1..5_000_000_u32],
@@ -140,7 +140,7 @@ fn violations(scenario: &Scenario) -> [u64; 5] {
 }
 
 #[test]
-fn the_broken_preset_breaks_what_its_note_says_and_is_mended_as_it_says() {
+fn the_broken_preset_has_the_violations_and_fixes_of_its_note() {
     let preset = PRESETS.iter().find(|preset| preset.id == "driver-timing-broken").expect("it is there");
     let mut scenario = preset.scenario();
     // 128 pulses, three turns: right from reset, left, right.

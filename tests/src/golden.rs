@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_record_that_differs_is_named_with_its_signals() {
+    fn the_first_difference_is_reported_with_its_signals() {
         let found = [record(0, 0x7_0000_0000), record(0x10, 0x7_0001_0000), record(0x18, 0x7_0001_0001)];
         let rows = [
             ("0 700000000\n10 700010000\n18 700010001\n", None),

@@ -347,7 +347,7 @@ fn sources() -> impl Iterator<Item = String> {
 }
 
 #[test]
-fn no_file_waits_in_a_circle_for_another() {
+fn files_have_no_circular_imports() {
     for source in
         sources().chain(["cli/src", "wasm/src", "firmware/src", "firmware/controller/src"].map(str::to_owned))
     {
@@ -360,7 +360,7 @@ fn no_file_waits_in_a_circle_for_another() {
 }
 
 #[test]
-fn rooms_use_what_stands_to_their_left() {
+fn crates_use_only_crates_to_their_left() {
     for (place, room) in ROOMS.iter().enumerate() {
         let allowed = &ROOMS[..place];
         let rooms = dependencies(&format!("core/{room}")).into_iter().filter_map(|line| {
@@ -377,7 +377,7 @@ fn rooms_use_what_stands_to_their_left() {
 }
 
 #[test]
-fn a_room_knows_of_another_only_what_it_may() {
+fn crates_use_only_the_allowed_modules_of_others() {
     for (room, other, allowed) in NARROW {
         for module in modules(&format!("core/{room}/src")) {
             for path in &module.seen.paths {
@@ -397,7 +397,7 @@ fn a_room_knows_of_another_only_what_it_may() {
 }
 
 #[test]
-fn every_file_that_the_documents_name_is_there() {
+fn every_file_named_in_the_documentation_exists() {
     let root = root();
     let own = ["README.md", "CONTRIBUTING.md"].map(|name| root.join(name));
     let folders = ["docs", "docs/how-to"].map(|folder| fs::read_dir(root.join(folder)).unwrap());
@@ -428,7 +428,7 @@ fn is_excepted(file: &str, what: &str) -> bool {
 }
 
 #[test]
-fn no_float_function_of_the_platform_and_nothing_from_outside_is_in_the_core() {
+fn the_core_has_no_platform_floats_and_no_outside_state() {
     let mut broken = Vec::new();
     for Module { file, seen, .. } in sources().flat_map(|source| modules(&source)) {
         for method in seen.methods {
@@ -466,7 +466,7 @@ fn dependencies(package: &str) -> Vec<String> {
 }
 
 #[test]
-fn firmware_knows_the_registers_or_the_controller_alone_and_they_know_nothing_of_it() {
+fn firmware_depends_only_on_registers_or_the_controller() {
     assert_eq!(dependencies("core/registers"), Vec::<String>::new());
     assert_eq!(dependencies("firmware"), ["stepscope-registers.workspace = true"]);
     let controller = ["stepscope-controller.workspace = true", "stepscope-peripheral.workspace = true"];
@@ -478,7 +478,7 @@ fn firmware_knows_the_registers_or_the_controller_alone_and_they_know_nothing_of
 }
 
 #[test]
-fn clippy_refuses_every_inexact_function_in_all_crates() {
+fn clippy_rejects_every_inexact_function_in_all_crates() {
     let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../clippy.toml")).unwrap();
     for function in INEXACT {
         for float in ["f32", "f64"] {
@@ -489,7 +489,7 @@ fn clippy_refuses_every_inexact_function_in_all_crates() {
 }
 
 #[test]
-fn a_circle_is_found_wherever_it_begins() {
+fn a_circle_is_found_from_any_of_its_files() {
     let uses = |rows: &[&[usize]]| rows.iter().map(|row| row.iter().copied().collect()).collect::<Vec<_>>();
     assert_eq!(circle(&uses(&[&[1, 2], &[2], &[]])), None);
     assert_eq!(circle(&uses(&[&[1], &[2], &[1]])), Some(vec![1, 2]));
@@ -515,7 +515,7 @@ fn a_re_export_is_followed_to_the_file_that_declares() {
 
 /// The tests above are only as good as what they see.
 #[test]
-fn a_path_is_seen_wherever_it_stands_outside_of_tests() {
+fn every_path_outside_of_tests_is_found() {
     let file = syn::parse_file(
         r#"
         use crate::{a::{b, c as d}, e};

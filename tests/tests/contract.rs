@@ -126,7 +126,7 @@ proptest! {
     #![proptest_config(effort::cases(2_048))]
 
     #[test]
-    fn the_core_gives_the_models_run_at_every_speed((config, input) in cases(every_mode())) {
+    fn runs_match_the_independent_model_at_every_speed((config, input) in cases(every_mode())) {
         let experiment = match experiment(&config, &input, Some(input.cycles)) {
             Ok(experiment) => experiment,
             Err(problems) => {
@@ -151,7 +151,7 @@ proptest! {
     }
 
     #[test]
-    fn a_run_without_an_end_stops_where_nothing_can_change_any_more(
+    fn a_run_without_an_end_stops_after_its_last_change(
         (config, input) in cases(every_mode())
     ) {
         let Ok(experiment) = experiment(&config, &input, None) else { return Ok(()) };
@@ -166,7 +166,7 @@ proptest! {
     }
 
     #[test]
-    fn the_paced_host_sends_packet_j_at_boot_and_1_and_j_ticks(
+    fn the_paced_host_sends_packet_j_at_boot_plus_1_plus_j_ticks(
         config in configs(every_mode()),
         bytes in prop::collection::vec(any::<u8>(), 0..200),
     ) {

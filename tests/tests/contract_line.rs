@@ -147,12 +147,12 @@ proptest! {
     #![proptest_config(effort::cases(400))]
 
     #[test]
-    fn framed_controllers_do_what_the_model_does((line, input) in framed_lines(every_mode())) {
+    fn framed_controllers_match_the_model((line, input) in framed_lines(every_mode())) {
         compare(&line, &input)?;
     }
 
     #[test]
-    fn framed_controllers_of_one_address_do_what_the_model_does(
+    fn framed_controllers_with_the_same_address_match_the_model(
         (line, input) in framed_lines_of_one_address(every_mode())
     ) {
         // A controller without an address has 0, and the additional ones need one to be written down.
@@ -164,12 +164,12 @@ proptest! {
     }
 
     #[test]
-    fn raw_controllers_on_one_line_do_what_the_model_does((line, input) in raw_lines(every_mode())) {
+    fn raw_controllers_on_one_line_match_the_model((line, input) in raw_lines(every_mode())) {
         compare(&line, &input)?;
     }
 
     #[test]
-    fn segments_do_what_the_model_does(case in segment_lists(every_mode())) {
+    fn segments_match_the_model(case in segment_lists(every_mode())) {
         let model = oracle::segments::run_segments(&case.config, &case.lists, case.cycles);
         let experiment = match segments(&case) {
             Ok(experiment) => experiment,

@@ -26,7 +26,7 @@ fn first() -> u64 {
 }
 
 #[test]
-fn random_controllers_are_the_models_to_the_cycle() {
+fn random_controllers_match_the_model_in_every_cycle() {
     let mut compared = 0;
     for seed in first()..first() + cases() {
         let case = random_case(seed);
@@ -82,7 +82,7 @@ fn same(seed: u64, expected: &Outcome, trace: &[Record], run: &Run, json: &str) 
 
 /// What the model refuses, the scenario refuses at the same paths.
 #[test]
-fn a_refused_case_is_refused_at_the_same_paths() {
+fn model_and_core_refuse_a_case_at_the_same_paths() {
     let mut case: Case = random_case(1);
     assert!(refused(&case).is_empty());
     case.controllers[0].max_speed_hz = 10_000_000;
@@ -95,7 +95,7 @@ fn a_refused_case_is_refused_at_the_same_paths() {
 /// A memory whose newest record has the greatest number there is (G7): what is written after it never becomes the newest, so it
 /// is written again and again.
 #[test]
-fn a_memory_that_writes_again_and_again_keeps_no_run_from_its_end_and_wears_alike_at_both_speeds() {
+fn endless_writes_end_with_the_run_with_equal_wear_at_both_speeds() {
     let open = Content { position: 5, trust: 1, open: true, group: 0, of_loop: 0 };
     let newest = oracle::journal_record(u32::MAX, open);
     let initial: String = newest.iter().map(|byte| format!("{byte:02x}")).collect();

@@ -165,7 +165,7 @@ fn zhang_2012s_controller_takes_the_times_of_its_table_3() {
 
 /// Sonobe 2011: 0.393 mm a step, 300 mm there, 0.1 s, 60 mm back, at most 700 mm/s.
 #[test]
-fn sonobe_2011_goes_there_and_back_and_rests_between() {
+fn sonobe_2011_moves_forth_and_back_with_a_dwell() {
     let made = Made::preset("sonobe-2011-table");
     let all = made.steps(0);
     assert_eq!(all.len(), 763 + 153, "300/0.393 and 60/0.393, rounded");
@@ -179,7 +179,7 @@ fn sonobe_2011_goes_there_and_back_and_rests_between() {
 
 /// By its staircase table: level 3 from 1000 to 5000; segments put each step at its cycle of 16 MHz, time 0 at cycle 1.
 #[test]
-fn zhang_2012s_staircase_holds_each_rate_for_its_steps() {
+fn zhang_2012s_staircase_has_the_steps_of_each_rate() {
     let made = Made::preset("zhang-2012-staircase");
     let all = made.steps(0);
     assert_eq!((all.len(), all[17_232].position), (17_233, 17_233));
@@ -210,7 +210,7 @@ fn zhang_2012s_staircase_holds_each_rate_for_its_steps() {
 
 /// Sonobe 2011 by segments: every edge at the table's reloads, of a timer of 1 MHz and so 16 cycles each.
 #[test]
-fn sonobe_2011_by_segments_steps_at_the_tables_reloads() {
+fn sonobe_2011_in_segments_steps_at_the_reloads_of_its_table() {
     let made = Made::preset("sonobe-2011-segments");
     let all = made.steps(0);
     assert_eq!((all.len(), all[762].position, all[762 + 153].position), (763 + 153, 763, 610));
@@ -275,7 +275,7 @@ fn song_2021s_table_2_has_6400_steps_in_0_4_s_without_and_with_a_plateau() {
 
 /// SWorldJournal, issue 11: amplitude 20 mm; distortions 0.26913 % and 0.26710 %, and the remark on the 7th harmonic.
 #[test]
-fn the_sines_return_and_their_pulses_have_the_documents_distortion() {
+fn sines_return_to_zero_with_the_published_distortion() {
     let spectra = [("sine-2022-d00054", 0.26913), ("sine-2022-d0006", 0.26710)].map(|(id, distortion)| {
         let made = Made::preset(id);
         let all = made.steps(0);
@@ -316,7 +316,7 @@ fn sine(amplitude: f64, d1: f64) -> SineSegments {
 
 /// SWorldJournal, issue 11: its figures 2 and 3 have 4 and 10 segments, on a grid of 360/2048 = 0.17578125 degrees.
 #[test]
-fn the_sines_figures_have_4_and_10_segments_on_the_documents_grid() {
+fn the_figures_of_the_sine_have_4_and_10_segments_on_its_grid() {
     for (d1, segments) in [(0.015, 4), (0.002, 10)] {
         let sine = sine(1000.0, d1);
         assert_eq!(sine.segments().len(), segments);
@@ -329,7 +329,7 @@ fn the_sines_figures_have_4_and_10_segments_on_the_documents_grid() {
 
 /// SWorldJournal, issue 11: intervals of a quarter take 100 kB and more, segments hundreds of times less.
 #[test]
-fn the_sines_segments_take_hundreds_of_times_less_memory_than_intervals() {
+fn sine_segments_need_hundreds_of_times_less_memory() {
     for d1 in [0.015, 0.006, 0.0054, 0.002] {
         let memory = sine(25_000.0, d1).memory();
         assert_eq!(memory.intervals, 100_000);
@@ -341,7 +341,7 @@ fn the_sines_segments_take_hundreds_of_times_less_memory_than_intervals() {
 /// SWorldJournal, issue 11, explains the 7th harmonic for d1 = 0.0054 by breakpoints 49.5 and 52 degrees apart. Its own
 /// breakpoints have no such distances: the nearest to the 51.4 degrees of that harmonic are 50.4 and 53.4.
 #[test]
-fn the_sines_distances_of_49_5_and_52_degrees_do_not_come_out() {
+fn the_published_distances_of_49_5_and_52_degrees_do_not_occur() {
     let sine = sine(1000.0, 0.0054);
     let quarter: Vec<f64> = sine.segments().iter().map(|segment| segment.from_deg).collect();
     let next = quarter.iter().rev().map(|angle| 180.0 - angle);
@@ -393,7 +393,7 @@ fn the_patents_four_motors_step_one_after_the_other() {
 
 /// RU 2704486: the orders of a tick come while the tick before it runs.
 #[test]
-fn the_patents_sixteen_motors_get_each_packet_a_tick_ahead() {
+fn the_patents_16_motors_get_each_packet_one_tick_early() {
     let made = Made::preset("patent-2019-sixteen-motors");
     assert_ticks_follow_each_other(&made);
     for pair in made.recording.packets.rows().windows(2) {
@@ -432,7 +432,7 @@ fn sources(folder: &Path, into: &mut String) {
 }
 
 #[test]
-fn every_test_that_the_list_of_figures_names_exists() {
+fn every_test_named_in_the_list_of_figures_exists() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let list = fs::read_to_string(root.join("docs/documents.md")).expect("the list");
     let mut all = String::new();

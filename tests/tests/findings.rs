@@ -16,7 +16,7 @@ fn broken(target: &Target, inputs: impl IntoIterator<Item = (String, Vec<u8>)>) 
 }
 
 #[test]
-fn no_finding_breaks_its_check_again() {
+fn earlier_findings_pass_their_checks() {
     for target in TARGETS {
         let findings = target.findings().expect("the findings can be read");
         assert_eq!(broken(target, findings), [""; 0], "in tests/findings/{}", target.name);
@@ -24,7 +24,7 @@ fn no_finding_breaks_its_check_again() {
 }
 
 #[test]
-fn every_seed_passes_and_there_are_some() {
+fn every_target_has_seeds_and_they_pass() {
     for target in TARGETS {
         let seeds = (target.seeds)();
         assert!(seeds.len() > 5, "{} has {} seeds", target.name, seeds.len());
@@ -45,7 +45,7 @@ fn every_seed_passes_and_there_are_some() {
 
 /// libFuzzer runs what the table above says, and nothing else.
 #[test]
-fn each_target_is_a_binary_of_its_own() {
+fn each_target_has_its_own_binary() {
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz");
     let manifest = fs::read_to_string(fuzz.join("Cargo.toml")).expect("fuzz/Cargo.toml");
     let names = manifest
@@ -80,7 +80,7 @@ proptest! {
     #![proptest_config(effort::cases(1_000))]
 
     #[test]
-    fn no_input_of_chance_breaks_a_check((target, bytes) in inputs()) {
+    fn random_inputs_pass_every_check((target, bytes) in inputs()) {
         (TARGETS[target].check)(&bytes);
     }
 }

@@ -17,7 +17,7 @@ fn bless(case: &Case, outcome: &Outcome) -> io::Result<()> {
 }
 
 #[test]
-fn every_case_gives_its_trace_at_both_speeds() {
+fn every_case_has_its_trace_at_both_speeds() {
     let blessing = env::var_os("STEPSCOPE_BLESS").is_some();
     let mut failures = Vec::new();
     for case in CASES {
@@ -34,7 +34,7 @@ fn every_case_gives_its_trace_at_both_speeds() {
 }
 
 #[test]
-fn every_case_says_why_and_every_preset_is_one() {
+fn every_case_states_its_reason_and_every_preset_is_a_case() {
     for case in CASES {
         let known = ["digest", "expect.trace", "preset", "scenario.json", "status", "why"];
         for (name, text) in case.files {

@@ -149,14 +149,14 @@ proptest! {
     #![proptest_config(effort::cases(3_000))]
 
     #[test]
-    fn no_text_makes_the_reader_fail(text in prop_oneof![any::<String>(), "[\\[\\]{}\",:0-9a-e.@-]{0,80}"]) {
+    fn no_text_causes_a_panic(text in prop_oneof![any::<String>(), "[\\[\\]{}\",:0-9a-e.@-]{0,80}"]) {
         let _ = judge(&text);
         open(&text);
         open(&format!("c={text}"));
     }
 
     #[test]
-    fn no_change_of_a_scenario_makes_the_judge_fail(
+    fn no_changed_scenario_causes_a_panic(
         scenario in prop_oneof![small(), segmented(), typed()],
         changes in prop::collection::vec(change(), 1..6),
     ) {
@@ -165,7 +165,7 @@ proptest! {
 
     /// Where it holds it is over soon: so many cycles, and so many grid steps of all motors, were known before.
     #[test]
-    fn no_plant_of_any_numbers_fails_and_every_run_of_one_has_the_same_bits(scenario in driven()) {
+    fn plants_of_any_numbers_run_with_the_same_bits(scenario in driven()) {
         if let Ok(experiment) = judge(&scenario.to_json())
             && experiment.cost().motor_grid_steps <= 100_000
         {
@@ -175,7 +175,7 @@ proptest! {
     }
 
     #[test]
-    fn no_link_with_a_good_check_makes_the_opener_fail(
+    fn no_link_with_a_valid_crc_causes_a_panic(
         scenario in prop_oneof![small(), typed()],
         changes in prop::collection::vec(change(), 0..3),
         noise in prop::collection::vec((any::<Index>(), any::<u8>()), 0..4),
@@ -192,7 +192,7 @@ proptest! {
     }
 
     #[test]
-    fn a_changed_link_is_refused(
+    fn a_changed_link_is_rejected(
         preset in prop::sample::select(PRESETS),
         changes in prop::collection::vec((any::<Index>(), "[!-~]"), 1..5),
     ) {
@@ -209,7 +209,7 @@ proptest! {
 
     /// Only numbers change, so many of these are accepted: what they cost is known and limited.
     #[test]
-    fn what_is_accepted_is_bounded_work(
+    fn accepted_scenarios_have_bounded_work(
         preset in prop::sample::select(PRESETS),
         changes in prop::collection::vec(
             (any::<Index>(), prop::sample::select(vec![1.0, 2.0, 16.0, 127.0, 1e-3, 0.5, 1e3, 1e5, 1e7, 4e9]))
@@ -222,7 +222,7 @@ proptest! {
 }
 
 #[test]
-fn every_truncation_and_every_flipped_character_of_every_presets_link_is_refused() {
+fn truncated_and_changed_links_of_presets_are_rejected() {
     for preset in PRESETS {
         let link = encode(&preset.scenario()).expect("a preset fits in a link");
         assert_eq!(decode(&link), Ok(preset.scenario()), "{}", preset.id);
@@ -243,7 +243,7 @@ fn every_truncation_and_every_flipped_character_of_every_presets_link_is_refused
 }
 
 #[test]
-fn a_payload_inflates_to_the_limit_and_not_a_byte_beyond() {
+fn a_payload_may_reach_but_not_exceed_its_limit() {
     let padded = |length: usize| compress_to_vec(format!("{{}}{}", " ".repeat(length - 2)).as_bytes(), 10);
     assert_eq!(decode(&around('z', &padded(MAX_JSON_BYTES))), Ok(Scenario::default()));
     let refusal = Err(LinkError::Payload { most: MAX_JSON_BYTES });
@@ -255,7 +255,7 @@ fn a_payload_inflates_to_the_limit_and_not_a_byte_beyond() {
 }
 
 #[test]
-fn deep_nesting_and_long_lists_of_nonsense_are_refused_like_any_other() {
+fn deep_nesting_and_long_invalid_lists_are_rejected() {
     let depth = 200_000;
     let texts = [
         "[".repeat(depth),

@@ -32,7 +32,7 @@ fn folder() -> PathBuf {
 }
 
 #[test]
-fn every_link_that_was_ever_published_opens_as_the_scenario_that_it_meant() {
+fn every_published_link_opens_as_its_scenario() {
     let mut links = 0;
     for entry in fs::read_dir(folder()).expect("the folder of links") {
         let path = entry.expect("an entry").path();
@@ -49,7 +49,7 @@ fn every_link_that_was_ever_published_opens_as_the_scenario_that_it_meant() {
 /// The link of a scenario is part of what was published: two people who share the same experiment
 /// get the same text.
 #[test]
-fn the_current_versions_links_are_still_written_as_they_were() {
+fn links_of_the_current_version_are_written_unchanged() {
     let file = folder().join(format!("v{VERSION}.txt"));
     for line in fs::read_to_string(file).expect("this version's links").lines() {
         let (link, json) = line.split_once(' ').expect("a link, a space, its scenario");
@@ -61,7 +61,7 @@ fn the_current_versions_links_are_still_written_as_they_were() {
 }
 
 #[test]
-fn the_runs_that_senders_saw_are_still_made_and_another_run_is_told() {
+fn published_fingerprints_match_and_other_runs_are_reported() {
     let (mut proofs, mut others) = (0, BTreeSet::new());
     let versions = (1..=VERSION).map(|version| folder().join(format!("v{version}.txt")));
     let texts: String = versions.map(|path| fs::read_to_string(path).expect("a version's links")).collect();
@@ -93,7 +93,7 @@ fn the_runs_that_senders_saw_are_still_made_and_another_run_is_told() {
 /// Prints the lines of today's presets, to add them to the file of their version:
 /// `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests links:: -- --nocapture`.
 #[test]
-fn lines_for_the_presets_can_be_printed() {
+fn prints_links_of_the_presets_on_request() {
     let mut lines = String::new();
     for scenario in PRESETS.iter().map(|preset| preset.scenario()).chain([Scenario::default()]) {
         let link = encode(&scenario).expect("a preset fits in a link");

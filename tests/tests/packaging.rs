@@ -123,7 +123,7 @@ fn each_library_has_its_metadata_and_licenses() {
 }
 
 #[test]
-fn the_tests_run_every_example_of_the_facade() {
+fn every_example_of_the_facade_is_tested() {
     let packages = packages();
     let core = packages.iter().find(|package| package["name"] == "stepscope-core").unwrap();
     let targets = core["targets"].as_array().unwrap().iter();
@@ -235,7 +235,7 @@ fn referenced(documentation: &str) -> Vec<String> {
 /// A library user starts on a crate's first page, and goes on to the modules that it links to, re-exports from, or
 /// uses in its examples. The first page of `stepscope-core` leads to the modules of all crates.
 #[test]
-fn first_pages_and_the_modules_that_they_lead_to_have_an_example_that_is_run() {
+fn first_pages_and_their_modules_have_a_tested_example() {
     let (mut missing, mut required) = (Vec::new(), 0);
     let facade = modules("core").0.remove(0).documentation;
     for (name, folder) in LIBRARIES {

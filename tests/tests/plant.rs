@@ -48,7 +48,7 @@ fn one_turn(motor: &str, plant: &str) -> String {
 }
 
 #[test]
-fn the_s_curves_move_is_followed_and_a_load_only_bends_it() {
+fn a_motor_follows_the_s_curve_despite_a_load() {
     // Rest errors are taken a while after the last step.
     for (motor, following, rest) in [
         ("", 0.078, -0.002),
@@ -131,7 +131,7 @@ fn read_back(moves: &str) -> (f64, i32, i32) {
 }
 
 #[test]
-fn the_documents_table_5_comes_out_as_its_encoder_reads_it() {
+fn the_encoder_reproduces_table_5_of_song_2021() {
     let cosine = r#"{"cosine":{"distance":{"deg":360},"duration_s":0.4,"ramp_s":0.2}}"#;
     let (off, distance, past) = read_back(cosine);
     // Its first and its last 15 ms are within a code, so the encoder sees 30 ms less; the pulses take 0.4 s to a step.
@@ -179,7 +179,7 @@ fn a_self_test_measures_the_settling_time_of_each_channel_and_staggers_by_it() {
 }
 
 #[test]
-fn a_self_test_that_finds_nothing_takes_t_step_and_says_so() {
+fn a_self_test_without_a_result_uses_t_step_and_reports_it() {
     // A converter with one code, 0 or not: P is 0. And a sensor so slow that a motor that hums on does not settle in T_step.
     let sensors = [
         r#""current_sensor":{"lsb_a":1000}"#,
@@ -215,7 +215,7 @@ fn a_stand_alone_controller_does_not_react_to_an_overload() {
 }
 
 #[test]
-fn stopped_in_its_boot_a_self_test_finds_nothing() {
+fn a_self_test_stopped_during_boot_has_no_result() {
     let json = self_test(r#","protection":{"threshold_a":1.2,"samples":1}"#, "");
     let run = run(&json, ());
     assert_eq!(run.self_test(0), [None; 4]);
@@ -242,7 +242,7 @@ fn overload(apart: u64) -> String {
 }
 
 #[test]
-fn an_overload_ends_the_segments_and_staggered_steps_are_none() {
+fn an_overload_ends_segments_and_staggering_prevents_it() {
     let run_together = run(&overload(0), ());
     let at = run_together.overload(0).expect("an overload");
     near(at as f64, 39_280.0, 160.0);
@@ -268,7 +268,7 @@ fn overload_by_ticks(line: &str, channels: usize) -> String {
 }
 
 #[test]
-fn an_overload_stops_a_controller_as_stop_does() {
+fn an_overload_stops_a_controller_like_stop() {
     for line in ["", r#""protocol":"framed""#] {
         let run = run(&overload_by_ticks(line, 4), ());
         let at = run.overload(0).expect("an overload");
@@ -311,7 +311,7 @@ fn all_ways(json: &str, controllers: usize) -> Vec<Vec<(u64, u64)>> {
 }
 
 #[test]
-fn both_speeds_and_all_slices_give_the_same_edges_and_the_same_plant() {
+fn speeds_and_slices_change_no_edge_and_no_plant_value() {
     // A slow clock, so that clock by clock is no long way.
     let small = |rest: &str| format!(r#"{{"clock_hz":1000000,"line":{{"baud":38400{rest}"#);
     let turn = r#""source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":16},"duration_s":0.04,"ramp_s":0.02}}]}]}}"#;
@@ -370,7 +370,7 @@ fn both_speeds_and_all_slices_give_the_same_edges_and_the_same_plant() {
 }
 
 #[test]
-fn a_plant_changes_no_edge_by_itself() {
+fn a_plant_alone_changes_no_edge() {
     let with = r#"{"plant":{}}"#;
     let mut without = Digest::default();
     experiment("{}").run(&mut without);
@@ -380,7 +380,7 @@ fn a_plant_changes_no_edge_by_itself() {
 }
 
 #[test]
-fn the_cost_of_a_plant_is_judged_before_it_runs() {
+fn the_cost_of_a_plant_is_validated_before_the_run() {
     let cost = |json: &str| experiment(json).cost();
     assert_eq!(cost("{}").motor_grid_steps, 0);
     let default = cost(r#"{"plant":{},"run_cycles":16000000}"#);
@@ -404,7 +404,7 @@ fn preset(id: &str) -> &'static str {
 
 /// F10's "one step", with what its note says of it.
 #[test]
-fn each_preset_shows_what_its_note_says() {
+fn each_preset_has_the_results_of_its_note() {
     let result = |id: &str| {
         let run = run(preset(id), SensorLog::default());
         let (result, overload) = (run.results().remove(0), run.overload(0));
@@ -460,7 +460,7 @@ fn each_preset_shows_what_its_note_says() {
 }
 
 #[test]
-fn a_held_position_can_be_wrong_by_whole_periods_after_a_load_has_turned_the_rotor() {
+fn a_load_can_turn_a_held_rotor_by_whole_periods() {
     let json = CONTROLLER_PLANT_PRESETS[0].json;
     let run = run(json, ());
     let machine = run.stand_alone().expect("a controller");
@@ -475,7 +475,7 @@ fn a_held_position_can_be_wrong_by_whole_periods_after_a_load_has_turned_the_rot
 }
 
 #[test]
-fn a_controller_that_waits_after_its_last_edge_ends_at_both_speeds_in_the_same_cycle() {
+fn a_controller_with_a_final_wait_ends_equally_at_both_speeds() {
     let panel = r#"{"debounce_cycles":0,"max_speed_hz":1000,"memory":{"byte_write_cycles":1},
         "groups":[{"move":{"length":1,"speed_hz":1000}},{"wait":{"timeout_ms":60}}],"inputs":[{"cycle":4000,"input":"start"}]}"#;
     for (panel, least) in [(panel, 10_000), ("{\"memory\":{\"byte_write_cycles\":1}}", 1600)] {
@@ -492,7 +492,7 @@ fn a_controller_that_waits_after_its_last_edge_ends_at_both_speeds_in_the_same_c
 }
 
 #[test]
-fn presets_give_the_same_plant_on_every_machine() {
+fn presets_have_the_same_plant_on_every_machine() {
     let expected = [
         ("patent-2019-figure-1", "15dad058bd518a09"),
         ("patent-2019-figure-2", "03a27bce1dd6070e"),
@@ -513,7 +513,7 @@ fn presets_give_the_same_plant_on_every_machine() {
 }
 
 #[test]
-fn the_contracts_plant_digests_come_out_whole_and_short() {
+fn plant_digests_match_the_contract_in_whole_and_short_runs() {
     for case in plant_cases() {
         for whole in [true, false] {
             assert_eq!(case.check(whole), Ok(()));

@@ -229,7 +229,7 @@ fn check(case: &Case, run: &Run, every: u64, what: &str) {
 }
 
 #[test]
-fn every_point_is_that_of_an_independent_model() {
+fn every_point_matches_the_independent_model() {
     let all = (0..cases()).map(|seed| (seed, filled(oracle::random_case(seed))));
     let mut flown = 0;
     for (seed, case) in all.filter(|(_, case)| is_refused(case).is_none()) {
@@ -247,7 +247,7 @@ fn every_point_is_that_of_an_independent_model() {
 /// F7: ENABLE in cycle p begins the count anew, and a conversion in p, which is looked at last, counts already; EN rises in
 /// p + 1.
 #[test]
-fn enable_begins_the_count_of_an_overload_anew() {
+fn enable_restarts_the_count_of_an_overload() {
     let en = 1 << 32;
     for step_cycles in [1, 2, 80] {
         for rise in (395..410).chain(478..484) {
@@ -272,7 +272,7 @@ fn enable_begins_the_count_of_an_overload_anew() {
 }
 
 #[test]
-fn what_the_model_refuses_is_refused_and_nothing_else() {
+fn model_and_core_refuse_the_same_cases() {
     let (mut refused, mut taken) = (0, 0);
     for seed in 0..10 * cases() {
         let case = filled(oracle::drawn_case(seed));

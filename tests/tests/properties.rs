@@ -20,7 +20,7 @@ proptest! {
     #![proptest_config(effort::cases(1_500))]
 
     #[test]
-    fn every_way_through_a_scenario_leaves_the_same(
+    fn slices_and_speeds_do_not_change_a_run(
         scenario in small(),
         slices in prop::collection::vec(1..40_u64, 1..5),
         hurry in 0..=100_u64,
@@ -30,7 +30,7 @@ proptest! {
     }
 
     #[test]
-    fn every_way_through_segments_leaves_the_same(
+    fn slices_and_speeds_do_not_change_segments(
         scenario in segmented(),
         slices in prop::collection::vec(1..40_u64, 1..5),
     ) {
@@ -40,7 +40,7 @@ proptest! {
 
     /// Not only what a scenario can put on the line: any levels at all, such as a firmware's test would feed.
     #[test]
-    fn no_line_makes_the_peripheral_fail_and_skipping_changes_nothing(
+    fn any_line_is_accepted_and_skipping_changes_nothing(
         scenario in small(),
         lengths in prop::collection::vec(prop_oneof![3 => 1..30_u64, 1 => 1..2_000_u64], 0..200),
     ) {
@@ -68,7 +68,7 @@ proptest! {
     #![proptest_config(effort::cases(4_000))]
 
     #[test]
-    fn a_scenario_survives_json_and_links(scenario in prop_oneof![typed(), small()]) {
+    fn scenarios_round_trip_through_json_and_links(scenario in prop_oneof![typed(), small()]) {
         for json in [scenario.to_json(), scenario.compact().to_string()] {
             let read = Scenario::from_json(&json);
             prop_assert_eq!(read.as_ref(), Ok(&scenario), "{}", json);
@@ -98,7 +98,7 @@ fn without_signs_of_zero(json: &str) -> String {
 }
 
 #[test]
-fn the_same_run_has_the_same_digest_whatever_takes_its_records() {
+fn a_digest_does_not_depend_on_other_sinks() {
     let experiment = Experiment::new(&Scenario::default()).expect("the default has no problems");
     let mut both = (Digest::default(), Vec::<Record>::new());
     experiment.run(&mut both);

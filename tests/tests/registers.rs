@@ -145,7 +145,7 @@ proptest! {
     #![proptest_config(effort::cases(1_500))]
 
     #[test]
-    fn accesses_at_any_cycles_leave_both_speeds_the_same(
+    fn accesses_in_any_cycle_have_equal_results_at_both_speeds(
         (scenario, accesses) in (small(), any::<bool>()).prop_flat_map(|(mut scenario, framed)| {
             scenario.line.protocol = if framed { Protocol::Framed } else { Protocol::Raw };
             let access = access(scenario.bus.channels, scenario.bus.slots);
@@ -261,7 +261,7 @@ proptest! {
     #![proptest_config(effort::cases(500))]
 
     #[test]
-    fn a_register_does_what_the_frame_does_that_ends_in_the_same_cycle(
+    fn a_register_write_equals_a_frame_that_ends_in_its_cycle(
         mut scenario in small(),
         commands in prop::collection::vec(
             (

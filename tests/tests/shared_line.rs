@@ -52,7 +52,7 @@ fn again(scenario: &Scenario, run: &Run) -> Scenario {
 
 /// A run that pauses at its last record, DE's fall after a reply, is over: the forced level changes nothing.
 #[test]
-fn a_level_forced_long_after_the_last_reply_lengthens_no_run() {
+fn a_level_forced_after_the_last_reply_lengthens_no_run() {
     let scenario = Scenario::from_json(
         r#"{ "bus": { "channels": 1 }, "controllers": [{ "address": 2 }],
             "line": { "protocol": "framed",
@@ -68,13 +68,13 @@ proptest! {
     #![proptest_config(effort::cases(600))]
 
     #[test]
-    fn every_way_through_a_shared_line_leaves_the_same(scenario in shared(), slice in 1..50_u64) {
+    fn slices_and_speeds_do_not_change_a_shared_line(scenario in shared(), slice in 1..50_u64) {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
         equivalence::check(&scenario, &experiment, Ways { slices: &[slice], hurry: 100, most_clocked: 400_000 });
     }
 
     #[test]
-    fn what_was_sent_and_forced_gives_every_controller_the_same_trace_again(scenario in shared()) {
+    fn replayed_bytes_and_levels_reproduce_every_trace(scenario in shared()) {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
         let mut first: Vec<Vec<Record>> = vec![Vec::new(); experiment.controllers()];
         let run = experiment.run_each(&mut first);
@@ -86,7 +86,7 @@ proptest! {
     }
 
     #[test]
-    fn a_framed_host_makes_each_tick_once_and_in_order_whatever_the_noise(scenario in shared()) {
+    fn a_framed_host_executes_each_tick_once_despite_noise(scenario in shared()) {
         let Ok(experiment) = Experiment::new(&scenario) else { return Ok(()) };
         let waits = scenario.line.protocol == Protocol::Framed && !matches!(scenario.source, Source::Line(_));
         if !waits || scenario.run_cycles.is_some() {

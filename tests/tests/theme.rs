@@ -62,7 +62,7 @@ fn at_least(least: f64, names: &[&str], grounds: &[&str]) {
 }
 
 #[test]
-fn the_contrast_of_known_colours_is_that_of_the_standard() {
+fn contrasts_of_known_colors_match_the_standard() {
     for (one, other, expected) in [
         ([0, 0, 0], [255, 255, 255], 21.0),
         ([0x76, 0x76, 0x76], [255, 255, 255], 4.54),
@@ -73,13 +73,13 @@ fn the_contrast_of_known_colours_is_that_of_the_standard() {
 }
 
 #[test]
-fn both_ways_into_the_dark_lead_to_the_same_colours() {
+fn both_selectors_of_dark_mode_have_the_same_colors() {
     assert_eq!(colours(&theme(), ":root:not([data-theme=\"light\"])"), dark());
     assert_eq!(light().keys().collect::<Vec<_>>(), dark().keys().collect::<Vec<_>>());
 }
 
 #[test]
-fn text_has_four_and_a_half_to_one() {
+fn text_has_a_contrast_of_at_least_4_5() {
     at_least(4.5, &["ink", "quiet"], &["pane", "ground", "raised", "chosen"]);
     at_least(4.5, &["ink", "error"], &["pane", "error-ground"]);
     at_least(4.5, &["ink", "warning"], &["pane", "warning-ground"]);
@@ -88,7 +88,7 @@ fn text_has_four_and_a_half_to_one() {
 }
 
 #[test]
-fn what_is_drawn_and_where_the_focus_is_has_three_to_one() {
+fn curves_and_focus_have_a_contrast_of_at_least_3() {
     let curves =
         ["ideal", "actual", "step", "dir", "enable", "wire", "packet", "reply", "tick", "axis", "baseline"];
     at_least(3.0, &curves, &["pane"]);

@@ -64,7 +64,7 @@ fn layer(path: &str) -> &str {
 }
 
 #[test]
-fn imports_are_seen_in_every_form_of_the_page() {
+fn every_form_of_import_is_found() {
     let text = "import { a,\n b } from \"../dom.js\";\nimport \"./c.js\";\n/** @typedef {import(\"../../state/types.js\").State} State */\n\
                 const later = () => import(\"./d.js\"); import * as e from \"../motion/e.js\"; f(\"./none.js\");";
     let mut found = imports("views/study/x.js", text);
@@ -76,7 +76,7 @@ fn imports_are_seen_in_every_form_of_the_page() {
 }
 
 #[test]
-fn every_folder_is_drawn_and_imports_what_stands_to_its_left() {
+fn folders_are_listed_and_import_only_from_their_left() {
     let order = order();
     let place = |path: &str| order.iter().position(|each| each == layer(path));
     let mut found = Vec::new();

@@ -934,7 +934,7 @@ fn requested_and_recognized_channels_come_first() {
 }
 
 #[test]
-fn watch_gets_progress_and_can_cancel() {
+fn a_watcher_gets_progress_and_can_cancel() {
     let rows: String = (0..100_000).map(|at| format!("{at},{}\n", at % 2)).collect();
     let table = format!("Time [s],A\n{rows}");
     let mut calls = Vec::new();

@@ -46,7 +46,7 @@ fn periods(positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
 }
 
 #[test]
-fn a_small_swing_has_its_frequency_and_decrement() {
+fn a_small_oscillation_has_its_frequency_and_decrement() {
     let motor = MotorModel { friction_mn_m: 0.0, ..MotorModel::default() };
     let (rises, peaks) = periods(&rings(&one(motor), 0.01, 1_600_000));
     let count = (rises.len() - 1) as f64;
@@ -82,7 +82,7 @@ fn two_masses_on_a_spring_have_two_frequencies() {
 }
 
 #[test]
-fn without_current_a_rotor_coasts_to_rest_by_its_friction() {
+fn friction_stops_a_rotor_without_current() {
     let motor = MotorModel { friction_mn_m: 10.0, viscous_un_m_s: 0.0, ..MotorModel::default() };
     let mut plant = Plant::new(&one(motor)).expect("it holds");
     let off = Record { cycle: Instant(0), levels: Levels(Levels::RX | Levels::TX) };
@@ -159,7 +159,7 @@ fn curve(rate: f64) -> f64 {
 }
 
 #[test]
-fn torque_at_an_imposed_speed_is_that_of_the_static_curve_up_to_the_corner_and_a_square_waves_above() {
+fn torque_is_static_below_the_corner_speed_and_a_square_waves_above() {
     let ratio = |rate: f64| {
         let mut best = f64::MIN;
         for lag in 0..80 {
@@ -203,7 +203,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn a_current_rises_as_resistance_and_inductance_have_it(motor in motors(), supply_v in 5.0..60.0) {
+    fn a_current_rises_with_the_time_constant_of_its_winding(motor in motors(), supply_v in 5.0..60.0) {
         // The rotor stands; the supply is too weak for the target, so the phase is held at its voltage.
         let motor = MotorModel { rotor_inertia_g_cm2: 1e9, peak_current_a: 1000.0, ..motor };
         let (r, l) = (motor.resistance_ohm, motor.inductance_mh / 1000.0);
@@ -218,7 +218,7 @@ proptest! {
     }
 
     #[test]
-    fn a_held_rotor_swings_at_its_natural_frequency_and_its_decrement(motor in motors(), viscous in 100.0..1000.0) {
+    fn a_held_rotor_oscillates_at_its_natural_frequency(motor in motors(), viscous in 100.0..1000.0) {
         let motor = MotorModel { friction_mn_m: 0.0, viscous_un_m_s: viscous, ..motor };
         let natural = Natural::of(&motor);
         prop_assume!(natural.damping_ratio < 0.1);
@@ -233,7 +233,7 @@ proptest! {
     }
 
     #[test]
-    fn a_load_turns_the_rotor_by_the_angle_whose_sine_is_their_ratio(motor in motors(), part in 0.05..0.9_f64) {
+    fn a_load_turns_the_rotor_by_the_arcsine_of_the_torque_ratio(motor in motors(), part in 0.05..0.9_f64) {
         let peak = motor.holding_torque_mn_m / SQRT_2;
         let motor = MotorModel { friction_mn_m: 0.0, gravity_torque_mn_m: part * peak, ..motor };
         let plant = Plant::new(&held(motor)).expect("it holds");
@@ -242,7 +242,7 @@ proptest! {
     }
 
     #[test]
-    fn a_rotor_without_current_coasts_as_far_as_its_friction_lets_it(motor in motors(), w in 20.0..300.0) {
+    fn friction_determines_how_far_a_rotor_coasts(motor in motors(), w in 20.0..300.0) {
         let motor = MotorModel { friction_mn_m: 20.0, viscous_un_m_s: 0.0, ..motor };
         let g = motor.full_step_deg.to_radians();
         let inertia = (motor.rotor_inertia_g_cm2 + motor.load_inertia_g_cm2) * 1e-7;
@@ -258,7 +258,7 @@ proptest! {
     }
 
     #[test]
-    fn two_masses_swing_at_both_roots_of_their_equation(motor in motors(), n_m_rad in 5.0..50.0, load in 50.0..500.0) {
+    fn two_masses_oscillate_at_both_roots_of_their_equation(motor in motors(), n_m_rad in 5.0..50.0, load in 50.0..500.0) {
         let motor = MotorModel {
             friction_mn_m: 0.0, viscous_un_m_s: 0.0, load_inertia_g_cm2: load, coupling_n_m_rad: Some(n_m_rad), ..motor
         };
@@ -311,7 +311,7 @@ proptest! {
     }
 
     #[test]
-    fn slicing_a_run_cannot_show(motor in motors(), rate in 50.0..20_000.0, chop: bool, cuts in prop::collection::vec(1_u64..900_000, 0..40)) {
+    fn slices_do_not_change_the_result(motor in motors(), rate in 50.0..20_000.0, chop: bool, cuts in prop::collection::vec(1_u64..900_000, 0..40)) {
         let mut motor = MotorModel { microsteps: 8, ..motor };
         if chop {
             motor.drive.regulator = stepscope_plant::parameters::CurrentControl::Chopper;
@@ -336,7 +336,7 @@ proptest! {
 }
 
 #[test]
-fn a_step_is_of_second_order_and_close_to_the_continuous_equations_at_five_microseconds() {
+fn integration_is_second_order_and_accurate_at_5_us() {
     // The same ringing on grids of 5 us, of a half and of a sixteenth of it, which stands for the continuous one.
     let ringing = |step_cycles: u32| {
         let motor = MotorModel { friction_mn_m: 0.0, ..full_steps() };

@@ -76,13 +76,13 @@ fn each_error_states_the_field_the_value_and_the_fix() {
 }
 
 #[test]
-fn the_same_motor_on_a_finer_grid_is_taken() {
+fn the_same_motor_on_a_finer_grid_is_accepted() {
     let motor = MotorModel { inductance_mh: 0.03, ..MotorModel::default() };
     assert_eq!(refused(&Setup { step_cycles: Some(64), ..one(motor) }), [""; 0]);
 }
 
 #[test]
-fn all_numbers_out_of_range_come_at_once() {
+fn all_numbers_out_of_range_are_reported_together() {
     let motor = MotorModel { microsteps: 0, resistance_ohm: 0.0, ..MotorModel::default() };
     let setup =
         Setup { step_cycles: Some(0), motors: vec![MotorModel::default(), motor], ..Setup::default() };

@@ -20,7 +20,7 @@ fn off() -> Record {
 }
 
 #[test]
-fn a_bus_at_rest_stays_where_the_source_and_the_windings_have_it() {
+fn an_idle_bus_keeps_its_equilibrium_voltage() {
     // 3.6 W and 20 mA through 0.5 ohm.
     let setup = buffered(Supply { source_ohm: 0.5, idle_ma: 20.0, ..Supply::default() });
     let mut plant = Plant::new(&setup).expect("it holds");
@@ -31,7 +31,7 @@ fn a_bus_at_rest_stays_where_the_source_and_the_windings_have_it() {
 }
 
 #[test]
-fn a_source_that_takes_nothing_back_lets_the_bus_rise_when_the_motors_brake() {
+fn braking_motors_raise_the_bus_of_a_source_that_cannot_sink() {
     let max = |source_sinks| {
         let setup = buffered(Supply { source_sinks, ..Supply::default() });
         let mut measures = Measures::new(&Plant::new(&setup).expect("it holds"));
@@ -47,7 +47,7 @@ fn a_source_that_takes_nothing_back_lets_the_bus_rise_when_the_motors_brake() {
 }
 
 #[test]
-fn a_supply_that_is_too_weak_for_its_motors_collapses_and_says_when() {
+fn a_supply_that_is_too_weak_collapses_at_a_reported_time() {
     // At rest 3.6 W are just there. When the currents build up from 0 again they take 4.8 mJ; the buffer holds 2.9 mJ.
     let weak = Supply { source_ohm: 39.0, buffer_uf: Some(10.0), source_sinks: true, ..Supply::default() };
     let setup = Setup { supply: weak, ..one(MotorModel::default()) };
@@ -61,7 +61,7 @@ fn a_supply_that_is_too_weak_for_its_motors_collapses_and_says_when() {
 }
 
 #[test]
-fn currents_decay_through_the_diodes_in_the_time_of_supply_and_inductance() {
+fn currents_decay_through_diodes_in_the_computed_time() {
     let mut zero = None;
     let mut observer = Each(|plant: &Plant| {
         if plant.state(0).expect("a motor").i_a == 0.0 {
@@ -75,7 +75,7 @@ fn currents_decay_through_the_diodes_in_the_time_of_supply_and_inductance() {
 }
 
 #[test]
-fn an_open_motor_that_is_driven_fast_feeds_the_bus() {
+fn a_disabled_motor_that_is_turned_fast_feeds_the_bus() {
     let mut plant =
         Plant::new(&one(MotorModel { friction_mn_m: 0.0, viscous_un_m_s: 0.0, ..MotorModel::default() }))
             .expect("it holds");

@@ -21,7 +21,7 @@ fn natural_frequency_of_the_default_motor() {
 }
 
 #[test]
-fn a_rotor_rests_where_its_currents_hold_the_gravity() {
+fn a_rotor_settles_where_its_torque_balances_gravity() {
     for (gravity, expected) in [(50.0, -0.113_134), (150.0, -0.355_864), (250.0, -0.690_160)] {
         let motor = MotorModel { friction_mn_m: 0.0, gravity_torque_mn_m: gravity, ..MotorModel::default() };
         let mut plant = Plant::new(&one(motor)).expect("it holds");
@@ -38,7 +38,7 @@ fn locked() -> Setup {
 }
 
 #[test]
-fn a_phase_of_a_locked_rotor_turns_its_current_round_in_the_time_of_its_inductance() {
+fn current_of_a_locked_rotor_reverses_in_its_inductive_time() {
     let mut arrived = None;
     let mut observer = Each(|plant: &Plant| {
         if plant.cycle() > 1600 && plant.state(0).expect("a motor").i_a < -1.0606 {
@@ -50,7 +50,7 @@ fn a_phase_of_a_locked_rotor_turns_its_current_round_in_the_time_of_its_inductan
 }
 
 #[test]
-fn the_supply_current_dips_and_peaks_while_a_phase_turns_round() {
+fn the_supply_current_dips_and_peaks_while_a_phase_reverses() {
     let mut currents = vec![];
     run(
         &locked(),
@@ -194,7 +194,7 @@ fn one_step(setup: &Setup, after: u64) -> StepResponse {
 }
 
 #[test]
-fn the_patents_figure_1_one_step_of_the_patent_set() {
+fn one_step_reproduces_the_patents_figure_1() {
     for position in [0, 1, 20, 40, 79] {
         let found = one_step(&patent_plant(1), position);
         near_part(found.rest_a, 0.2167, 0.01);
@@ -223,7 +223,7 @@ fn deviations(setup: &Setup) -> [Deviation; 2] {
 }
 
 #[test]
-fn the_patents_figure_2_four_motors_together_and_staggered() {
+fn four_motors_reproduce_the_patents_figure_2() {
     let [together, staggered] = deviations(&patent_plant(4));
     println!("{together:?} {staggered:?}");
     near(together.above_a, 3.16, 0.03);
@@ -234,7 +234,7 @@ fn the_patents_figure_2_four_motors_together_and_staggered() {
 }
 
 #[test]
-fn the_default_motor_in_full_steps_has_nearly_the_same_ratio_but_a_hump_of_its_own() {
+fn the_default_motor_has_nearly_the_same_peak_ratio() {
     let setup = Setup { motors: vec![full_steps(); 4], ..Setup::default() };
     let [together, staggered] = deviations(&setup);
     near(together.max_a() / staggered.max_a(), 2.92, 0.04);
@@ -260,7 +260,7 @@ fn overload(apart: u64) -> Option<u64> {
 }
 
 #[test]
-fn four_motors_that_step_together_are_an_overload_and_staggered_ones_are_none() {
+fn four_simultaneous_steps_overload_the_supply_unless_staggered() {
     near(overload(0).expect("an overload") as f64, 39_280.0, 160.0);
     assert_eq!(overload(8192), None);
 }
@@ -270,7 +270,7 @@ fn chopped(decay: CurrentDecay) -> DriverModel {
 }
 
 #[test]
-fn a_chopper_at_rest() {
+fn chopper_at_standstill() {
     for (decay, mean, khz, swing) in
         [(CurrentDecay::Slow, 1.058, 46.5, None), (CurrentDecay::Mixed(0.31), 1.033, 35.8, Some(0.046))]
     {
@@ -324,7 +324,7 @@ fn small_currents_do_not_decay_slowly() {
 }
 
 #[test]
-fn samples_of_a_known_shape_have_the_settling_time_that_they_were_made_with() {
+fn known_samples_have_their_settling_time() {
     let sample = |cycle: u64, current| Sample { cycle, current };
     let rest = (0..10).map(|k| sample(k * 10, 1.0));
     let after = [(100, 0.5), (110, 3.0), (120, 1.5), (130, 1.3), (140, 0.5), (150, 1.1)];

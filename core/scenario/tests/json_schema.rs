@@ -32,7 +32,7 @@ fn the_schema_accepts_every_preset_in_every_form() {
 }
 
 #[test]
-fn the_schema_refuses_wrong_names_types_and_ranges() {
+fn the_schema_rejects_invalid_names_types_and_ranges() {
     let validator = validator();
     let rows = [
         (r#"[]"#, ""),

@@ -8,7 +8,7 @@ use stepscope_scenario::{
 };
 
 #[test]
-fn the_documentation_is_what_the_schema_says() {
+fn the_documentation_matches_the_schema() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenario.md");
     let expected = markdown();
     if env::var_os("STEPSCOPE_BLESS").is_some() {
@@ -45,12 +45,12 @@ fn problems(mut wrong: impl FnMut(&Group, &Field) -> bool) -> Vec<String> {
 }
 
 #[test]
-fn every_row_says_what_it_is_and_what_it_is_called() {
+fn every_field_has_a_label_and_a_help_text() {
     assert_eq!(problems(|_, field| field.text().is_empty() || field.label.is_empty()), [""; 0]);
 }
 
 #[test]
-fn the_pages_explanations_are_what_the_schema_says() {
+fn the_pages_explanations_match_the_schema() {
     let mut said = std::collections::BTreeMap::new();
     each(&Scenario::TYPE, "", &mut Vec::new(), &mut |_, group, field| {
         if !field.explanation.is_empty() {
@@ -82,7 +82,7 @@ fn the_pages_explanations_are_what_the_schema_says() {
 }
 
 #[test]
-fn what_the_form_asks_is_explained() {
+fn every_field_of_the_form_has_an_explanation() {
     // Segments are typed as lines, and the version is no one's to give.
     let asked = |group: &Group, field: &Field| {
         let quantity = |group: &Group| group.is_choice && matches!(group.fields[0].ty, Type::Number);
@@ -131,7 +131,7 @@ fn what_the_form_asks_is_explained() {
 }
 
 #[test]
-fn a_range_is_one_of_its_type_and_nothing_is_said_where_it_may_stand() {
+fn ranges_fit_their_types_and_optional_fields_explain_null() {
     let optional = |ty: &Type| matches!(ty, Type::Optional(_));
     assert_eq!(problems(|_, field| optional(&field.ty) == field.null_means.is_empty()), [""; 0], "null");
     let bare = |ty: &Type| match *ty {
@@ -152,7 +152,7 @@ fn a_range_is_one_of_its_type_and_nothing_is_said_where_it_may_stand() {
 }
 
 #[test]
-fn a_condition_names_a_field_and_one_of_its_words() {
+fn a_condition_names_a_field_and_one_of_its_values() {
     let mut all = Vec::new();
     each(&Scenario::TYPE, "", &mut Vec::new(), &mut |path, _, field| {
         all.push((path.trim_start_matches('.').to_owned(), *field));
@@ -168,7 +168,7 @@ fn a_condition_names_a_field_and_one_of_its_words() {
 }
 
 #[test]
-fn what_the_page_takes_has_every_group_with_its_defaults() {
+fn the_schema_of_the_page_has_every_default() {
     let schema: serde_json::Value = serde_json::from_str(&describe()).expect("JSON");
     let mut scenario =
         serde_json::from_str::<serde_json::Value>(&Scenario::default().to_json()).expect("JSON");

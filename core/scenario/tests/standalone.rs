@@ -10,7 +10,7 @@ fn problems(controllers: &str) -> Vec<String> {
 }
 
 #[test]
-fn every_refusal_names_its_field_and_the_numbers() {
+fn every_error_names_its_field_and_numbers() {
     let at = "source.standalone[0]";
     let rows: &[(&str, &[&str])] = &[
         ("[{}]", &[]),
@@ -86,7 +86,7 @@ fn every_refusal_names_its_field_and_the_numbers() {
 }
 
 #[test]
-fn controllers_survive_their_canonical_form() {
+fn controllers_round_trip_through_the_canonical_form() {
     let json = r#"{"source":{"standalone":[{"groups":[{"home":{}},{"move_to":{"length":-5}},{"profile":{"direction":"negative","intervals_q16":[18446744073709551615]}}],"home":{},"inputs":[{"cycle":7,"input":"key_9"},{"push_steps":-3}],"memory":{"initial":"01ff","policy":"write_ahead"},"return":{"speed_hz":500},"short_move":"reverse"}]}}"#;
     let scenario = Scenario::from_json(json).expect("reads");
     assert_eq!(scenario.compact().to_string(), json);
@@ -94,7 +94,7 @@ fn controllers_survive_their_canonical_form() {
 }
 
 #[test]
-fn only_a_pulse_of_the_bus_counts_and_no_line() {
+fn only_the_pulse_of_the_bus_is_validated_and_no_line() {
     let rows = [
         (r#""line":{"baud":0}"#, None),
         (r#""bus":{"slots":0}"#, Some("bus.slots")),

@@ -8,7 +8,7 @@ fn peaks(moves: &str) -> Peaks {
 }
 
 #[test]
-fn what_no_move_has_in_itself_the_axis_finds_between_them() {
+fn an_axis_finds_the_jumps_between_its_moves() {
     let cosine = r#"{"cosine":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.2}}"#;
     let pi = std::f64::consts::PI;
     let smooth = peaks(cosine);

@@ -44,7 +44,7 @@ fn plans() -> impl Iterator<Item = (&'static str, AxisPlan)> {
 }
 
 #[test]
-fn between_two_breakpoints_every_curve_is_smooth() {
+fn every_curve_is_smooth_between_two_breakpoints() {
     for (moves, plan) in plans() {
         let (from, to) = (-0.01, plan.duration_s() + 0.01);
         let mut covered = 0.0;
@@ -65,7 +65,7 @@ fn between_two_breakpoints_every_curve_is_smooth() {
 }
 
 #[test]
-fn whole_periods_are_cut_once_and_stand_for_all() {
+fn identical_periods_are_divided_once_and_counted() {
     for moves in MOVES.iter().filter(|moves| moves.contains(r#""sine"#)) {
         let plan = plan(moves);
         let breakpoints = Breakpoints::of(&plan);

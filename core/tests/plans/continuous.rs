@@ -81,7 +81,7 @@ fn a_mirrored_move_has_the_same_cycles_to_the_left() {
 }
 
 #[test]
-fn a_move_backwards_in_time_swaps_its_speeds_and_limits() {
+fn a_move_reversed_in_time_swaps_its_speeds_and_limits() {
     let forth = plan(BETWEEN);
     let swapped = BETWEEN
         .replace("max_acceleration", "max_x")
@@ -98,7 +98,7 @@ fn a_move_backwards_in_time_swaps_its_speeds_and_limits() {
 }
 
 #[test]
-fn a_move_takes_over_the_end_speed_of_the_previous_one() {
+fn a_move_starts_at_the_end_speed_of_the_previous_one() {
     let end = r#","end_speed":{"steps_s":2000}"#;
     let stop = r#","start_speed":{"steps_s":0}"#;
     let check = |moves: &[String], jump: f64| {
@@ -113,7 +113,7 @@ fn a_move_takes_over_the_end_speed_of_the_previous_one() {
 }
 
 #[test]
-fn a_new_target_goes_on_from_any_state() {
+fn a_new_target_continues_from_any_state() {
     let cut = |at_s: f64, target: &str| format!(r#"{{"retarget":{{"at_s":{at_s},"target":{target}}}}}"#);
     let axis = |moves: &[String]| {
         plan(&format!(r#"{{{},"moves":[{}]}}"#, limits(4000.0, 20_000.0, 400_000.0), moves.join(",")))
@@ -216,7 +216,7 @@ fn axes_pass_way_points_together() {
 }
 
 #[test]
-fn an_input_shaper_ends_the_axis_later_and_leaves_less_vibration() {
+fn an_input_shaper_lengthens_the_move_and_reduces_vibration() {
     let moves = r#""moves":[{"jerk_limited":{"distance":{"steps":400},"max_speed":{"steps_s":8000},"max_acceleration":{"steps_s2":200000},"max_jerk":{"steps_s3":2e7}}}]"#;
     let shaper = r#""input_shaper":{"mzv":{"frequency_hz":45,"damping_ratio":0.1}}"#;
     let (plain, shaped) = (plan(&format!("{{{moves}}}")), plan(&format!("{{{shaper},{moves}}}")));
@@ -269,7 +269,7 @@ fn steps_due_by_a_cycle_are_those_of_earlier_cycles() {
 
 /// Axes or motions, and their problems.
 #[test]
-fn refusals_state_the_numbers_and_what_is_accepted() {
+fn errors_state_the_value_and_the_allowed_range() {
     let end = r#","end_speed":{"steps_s":2000}"#;
     let axis = |text: String| format!(r#""axes":[{text}]"#);
     let moves = |moves: &[String]| axis(format!(r#"{{"moves":[{}]}}"#, moves.join(",")));

@@ -3,7 +3,7 @@
 use super::check;
 
 #[test]
-fn a_motors_numbers_are_judged_with_their_paths() {
+fn invalid_numbers_of_a_motor_are_reported_with_their_paths() {
     check(r#"{"motor":null}"#, &[]);
     check(r#"{"motor":{}}"#, &[]);
     check(r#"{"motor":{"peak_current_a":2.1213,"working_rate_hz":19200}}"#, &[]);
@@ -24,7 +24,7 @@ fn a_motors_numbers_are_judged_with_their_paths() {
 }
 
 #[test]
-fn a_motor_on_direct_mechanics_is_refused_with_the_remedy() {
+fn a_motor_on_direct_mechanics_is_rejected_with_a_remedy() {
     check(
         r#"{"mechanics":{"direct":{}},"motor":{}}"#,
         &[

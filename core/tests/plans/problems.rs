@@ -8,7 +8,7 @@ fn plan(json: &str) -> Result<AxisPlan, Problems> {
 }
 
 #[test]
-fn every_problem_is_told_with_its_path() {
+fn every_problem_is_reported_with_its_path() {
     check("{}", &[]);
     check(r#"{"moves":[]}"#, &["axis.moves: 0 moves; use 1 to 64"]);
     check(
@@ -104,7 +104,7 @@ fn axes_share_the_bounds_on_tables_and_segments() {
 }
 
 #[test]
-fn the_documents_table_comes_out_in_its_own_units() {
+fn the_table_of_sonobe_2011_is_reproduced_in_its_units() {
     let plan = plan(
         r#"{"mechanics":{"direct":{"step_mm":0.393}},"moves":[{"trapezoid":{"distance":{"mm":100},
         "start_speed":{"mm_s":100},"top_speed":{"mm_s":500},"acceleration":{"mm_s2":3500}}}]}"#,
@@ -117,7 +117,7 @@ fn the_documents_table_comes_out_in_its_own_units() {
 }
 
 #[test]
-fn moves_follow_one_another_in_time_and_place() {
+fn moves_continue_in_time_and_position() {
     let plan = plan(
         r#"{"moves":[{"dwell":{"duration_s":0.5}},{"cosine":{"distance":{"steps":600},"duration_s":1,"ramp_s":0.5}},
         {"dwell":{"duration_s":0}},{"constant":{"distance":{"steps":-1000},"speed":{"steps_s":500}}}]}"#,

@@ -3,7 +3,7 @@
 use super::{axis, check, plan_axis};
 
 #[test]
-fn a_ramp_shorter_than_any_clocks_cycle_is_none() {
+fn a_ramp_shorter_than_any_cycle_is_no_ramp() {
     let plan = |kind: &str, rest: &str, ramp_s: &str| {
         let json = format!(r#"{{"moves":[{{"{kind}":{{"ramp_s":{ramp_s}{rest}}}}}]}}"#);
         plan_axis(&axis(&json), "axis").unwrap()
@@ -31,7 +31,7 @@ fn a_ramp_shorter_than_any_clocks_cycle_is_none() {
 }
 
 #[test]
-fn slices_may_have_the_highest_speed_exactly_and_no_more() {
+fn slices_may_reach_but_not_exceed_the_maximum_speed() {
     // In slices of 10 us, 30 us (the last is of 10 us), 10 ms and 70 ms.
     for (steps, duration_s, slice_s) in [
         (100_000, "0.01", "1e-5"),
@@ -57,7 +57,7 @@ fn slices_may_have_the_highest_speed_exactly_and_no_more() {
 }
 
 #[test]
-fn every_problem_of_slices_and_shapes_is_told_with_its_path() {
+fn every_problem_of_slices_and_shapes_has_its_path() {
     check(
         r#"{"moves":[{"cosine":{"distance":{"steps":0},"method":"sliced","slice_s":0}},{"cosine":{"slice_s":0}},{"cosine":{"distance":{"steps":100},"method":"sliced"}}]}"#,
         &[

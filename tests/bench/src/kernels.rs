@@ -354,7 +354,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_yardstick_is_measured_right_before_what_is_compared_with_it_or_with_others_of_its_own() {
+    fn a_reference_kernel_precedes_the_kernels_it_is_compared_with() {
         for (index, kernel) in Kernel::ALL.into_iter().enumerate() {
             let before = &Kernel::ALL[..index];
             if let Some(yardstick) = kernel.facts().yardstick {
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn sixteen_channels_make_two_records_a_slot_and_thirty_two_edges() {
+    fn sixteen_channels_make_2_records_and_32_edges_per_slot() {
         let mut kernels = Kernels::new().unwrap();
         let Work { units, edges } = kernels.work(Kernel::Digest);
         // Beside the steps: four edges of the line a byte (0xe4), the first record, and DIR.
@@ -376,7 +376,7 @@ mod tests {
     }
 
     #[test]
-    fn every_mode_makes_the_steps_that_it_was_asked_for() {
+    fn every_mode_makes_the_requested_steps() {
         let mut kernels = Kernels::new().unwrap();
         let modes =
             [Kernel::CommonDir, Kernel::Staggered, Kernel::Framed, Kernel::Segments, Kernel::SegmentsApart];
@@ -396,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn every_table_is_made_and_a_compressed_one_is_short() {
+    fn tables_are_complete_and_compressed_tables_short() {
         let mut kernels = Kernels::new().unwrap();
         let tables = [
             Kernel::Exact,
@@ -418,7 +418,7 @@ mod tests {
     }
 
     #[test]
-    fn the_plants_motors_turn_and_every_call_is_the_same() {
+    fn motors_of_the_plant_turn_identically_in_every_call() {
         let mut kernels = Kernels::new().unwrap();
         for kernel in [Kernel::PlantAveraged, Kernel::PlantChopper, Kernel::PlantRun] {
             let first = kernels.call(kernel);
@@ -430,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn both_speeds_make_as_many_records_and_every_clock_too() {
+    fn every_speed_and_clock_makes_the_same_number_of_edges() {
         let mut kernels = Kernels::new().unwrap();
         let [slow, fast] = [Kernel::ClockByClock, Kernel::Fast].map(|kernel| kernels.work(kernel));
         assert_eq!(slow.units * SHORT_RUNS, fast.units);

@@ -264,14 +264,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_steady_motion_fires_every_channel_in_every_slot() {
+    fn the_constant_motion_steps_every_channel_in_every_slot() {
         let experiment = steady().unwrap();
         let ticks: Vec<&[u8]> = experiment.schedule().iter().map(|send| send.bytes).collect();
         assert_eq!(ticks, vec![&[0x80 | 100; 16]; 10_000]);
     }
 
     #[test]
-    fn nearly_every_tick_of_the_varied_motion_orders_something_else_than_the_one_before() {
+    fn nearly_every_tick_of_the_varied_motion_differs_from_the_last() {
         let experiment = varied().unwrap();
         let ticks: Vec<&[u8]> = experiment.schedule().iter().map(|send| send.bytes).collect();
         let same = ticks.windows(2).filter(|pair| pair[0] == pair[1]).count();
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_motion_orders_the_same_at_every_clock() {
+    fn a_motion_has_the_same_packets_at_every_clock() {
         let orders = |clock_hz| {
             let experiment = at_clock(clock_hz).unwrap();
             experiment.schedule().iter().map(|send| send.bytes.to_vec()).collect::<Vec<_>>()

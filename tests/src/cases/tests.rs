@@ -84,7 +84,7 @@ fn check_line(line: &[Config]) {
 }
 
 #[test]
-fn raw_cases_reach_every_mode_every_fault_and_both_sides_of_the_rules() {
+fn raw_cases_reach_every_mode_fault_and_refusal() {
     let mut reached = Reached::default();
     let cases_drawn = 600;
     for (config, input) in drawn(cases(every_mode()), cases_drawn) {
@@ -213,7 +213,7 @@ fn framed_lines_reach_every_fault_reply_and_state() {
 }
 
 #[test]
-fn controllers_of_one_address_answer_at_once() {
+fn controllers_with_the_same_address_reply_together() {
     let mut reached = 0;
     for (line, input) in drawn(framed_lines_of_one_address(every_mode()), 100) {
         if line.iter().any(refused) {
@@ -228,7 +228,7 @@ fn controllers_of_one_address_answer_at_once() {
 }
 
 #[test]
-fn segment_lists_reach_every_rule_of_refusal_and_both_directions() {
+fn segment_lists_reach_every_refusal_and_both_directions() {
     let mut reached = Reached::default();
     let lists_drawn = 2_000;
     for SegmentCase { config, lists, cycles } in drawn(segment_lists(every_mode()), lists_drawn) {

@@ -393,7 +393,7 @@ mod tests {
     use stepscope_core::capture::capture::Format;
 
     #[test]
-    fn the_seeds_are_of_each_kind_and_can_be_opened() {
+    fn seeds_of_every_kind_can_be_opened() {
         let mut kinds = Vec::new();
         for seed in seeds() {
             let file = &seed[..seed.len() - TAIL - 1];

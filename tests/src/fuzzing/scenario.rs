@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_plants_among_the_seeds_are_run() {
+    fn the_plants_of_the_seeds_are_run() {
         for text in PLANTS {
             let experiment = judge(text).unwrap_or_else(|problems| panic!("{text}: {problems:?}"));
             let cost = experiment.cost();

@@ -240,7 +240,7 @@ proptest! {
     }
 
     #[test]
-    fn what_has_a_curve_of_its_own_makes_each_step_where_that_crosses_a_half(
+    fn special_curves_step_where_they_cross_half_integers(
         given in own_curve(), clock_hz in prop::sample::select(CLOCKS[1..].to_vec()),
     ) {
         let Some(plan) = plan(given.clone())? else { return Ok(()) };
@@ -342,7 +342,7 @@ fn own_curve() -> impl Strategy<Value = Move> {
 }
 
 #[test]
-fn over_a_hundred_million_steps_nothing_drifts() {
+fn a_hundred_million_steps_have_no_drift() {
     const STEPS: u64 = 100_000_000;
     let clock_hz = 16_000_000;
     // 12345.5 steps/s: step k at (2k - 1)*clock/24691 cycles, in whole numbers.

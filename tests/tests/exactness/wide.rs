@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn thirty_digits_are_kept() {
+    fn operations_are_exact_to_thirty_digits() {
         let third = Wide::from(1.0) / Wide::from(3.0);
         same(third * Wide::from(3.0), Wide::from(1.0));
         for x in [2.0, 1e-9, 123_456_789.125] {

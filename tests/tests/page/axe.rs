@@ -42,7 +42,7 @@ pub(crate) fn none(wrong: &[String]) -> Result<()> {
 }
 
 #[test]
-fn axe_finds_nothing_on_a_wide_screen_in_any_colours() -> Result<()> {
+fn axe_finds_nothing_on_a_wide_screen_in_any_theme() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.open("").await?;
@@ -130,7 +130,7 @@ fn axe_finds_nothing_on_a_narrow_screen_at_any_tab() -> Result<()> {
 }
 
 #[test]
-fn axe_finds_nothing_where_something_is_wrong_or_asked() -> Result<()> {
+fn axe_finds_nothing_in_errors_and_dialogs() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.open("#c=1.z.broken").await?;

@@ -31,7 +31,7 @@ async fn rows(page: &Session, css: &str) -> Result<Vec<Vec<f64>>> {
 }
 
 #[test]
-fn between_two_cursors_are_the_means_that_the_core_computes() -> Result<()> {
+fn two_cursors_show_the_means_of_the_core() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of("{}")?;
         let (a, b) = (1_600_123, 4_100_456);
@@ -91,7 +91,7 @@ const SHOWN: &str =
     "['window-start', 'window-end'].map((id) => document.getElementById(id).value).join(' to ')";
 
 #[test]
-fn a_box_zooms_and_back_shows_what_was_there_before() -> Result<()> {
+fn a_box_zooms_in_and_back_restores_the_range() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let whole: String = page.eval(SHOWN).await?;
@@ -124,7 +124,7 @@ const COUNT: &str = "window.strokes = {}; for (const name of ['stroke', 'fillTex
         window.strokes[this.canvas.id] = (window.strokes[this.canvas.id] ?? 0) + 1; return real.apply(this, given); }; }";
 
 #[test]
-fn a_moving_pointer_draws_on_the_cursors_layer_alone() -> Result<()> {
+fn a_moving_pointer_redraws_only_the_cursor_layer() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(COUNT).await?;
         page.open("").await?;
@@ -152,7 +152,7 @@ fn a_moving_pointer_draws_on_the_cursors_layer_alone() -> Result<()> {
 }
 
 #[test]
-fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
+fn a_baseline_is_drawn_and_measured_next_to_a_later_run() -> Result<()> {
     in_browser(|page| async move {
         let baseline = Known::of(r#"{"title":"S-curve"}"#)?;
         let later = Known::of(
@@ -215,7 +215,7 @@ fn a_baseline_is_drawn_and_measured_beside_a_later_one() -> Result<()> {
 }
 
 #[test]
-fn a_harmonic_that_is_pointed_at_lights_up_as_stem_and_row() -> Result<()> {
+fn hovering_over_a_harmonic_highlights_its_stem_and_row() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.preset("sine-2022-d0006").await?;
@@ -255,7 +255,7 @@ fn a_harmonic_that_is_pointed_at_lights_up_as_stem_and_row() -> Result<()> {
 }
 
 #[test]
-fn keys_that_move_a_cursor_are_answered_and_the_values_stand_in_a_table() -> Result<()> {
+fn keys_move_a_cursor_and_a_table_shows_its_values() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.press("#charts", "\u{e008}\u{e014}").await?;
@@ -287,7 +287,7 @@ const KEEP: &str = "window.saved = {}; const make = URL.createObjectURL;
     HTMLAnchorElement.prototype.click = function () { window.saved[this.download] = window.last; };";
 
 #[test]
-fn charts_are_saved_as_pictures_and_tables_of_what_is_seen() -> Result<()> {
+fn charts_are_saved_as_visible_pictures_and_tables() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(KEEP).await?;
         page.open("").await?;

@@ -22,7 +22,7 @@ async fn added(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn an_added_controller_is_selected_changed_and_taken_back() -> Result<()> {
+fn an_added_controller_is_selected_changed_and_undone() -> Result<()> {
     let shorter = r#"{"line":{"address":0},"controllers":[{"axes":[{"moves":[
         {"cosine":{"distance":{"steps":-800}}}]}]}]}"#;
     in_browser(move |page| async move {
@@ -53,7 +53,7 @@ fn an_added_controller_is_selected_changed_and_taken_back() -> Result<()> {
 }
 
 #[test]
-fn another_source_gives_every_controller_something_to_do() -> Result<()> {
+fn changing_the_source_gives_every_controller_commands() -> Result<()> {
     let packets = r#"{"line":{"address":0},"source":{"packets":{"packets":["008a","000a"]}},
         "controllers":[{"packets":["018a","010a"]}]}"#;
     let framed = r#"{"line":{"protocol":"framed","address":0},"source":{"line":{"sends":[
@@ -76,7 +76,7 @@ fn another_source_gives_every_controller_something_to_do() -> Result<()> {
 }
 
 #[test]
-fn what_is_wrong_with_a_controller_is_said_at_its_field() -> Result<()> {
+fn errors_of_a_controller_are_shown_at_its_field() -> Result<()> {
     let with = |fields: &str| TWO.replace(r#"{"axes""#, &format!(r#"{{{fields},"axes""#));
     let ramp = TWO.replace(r#"[{}]"#, r#"[{"moves":[{"cosine":{"ramp_s":0.3}}]}]"#);
     let rows = [
@@ -110,7 +110,7 @@ fn what_is_wrong_with_a_controller_is_said_at_its_field() -> Result<()> {
 }
 
 #[test]
-fn a_copied_controller_has_an_address_of_its_own_and_can_be_removed() -> Result<()> {
+fn a_copied_controller_has_a_new_address_and_can_be_removed() -> Result<()> {
     in_browser(|page| async move {
         added(&page).await?;
         page.click("[aria-label='Copy controller 2']").await?;

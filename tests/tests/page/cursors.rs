@@ -172,7 +172,7 @@ pub(crate) fn reading(text: &str, name: &str) -> Result<f64> {
 }
 
 #[test]
-fn a_reading_is_the_value_in_the_cursors_very_cycle() -> Result<()> {
+fn a_reading_is_the_value_in_the_cycle_of_the_cursor() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of("{}")?;
         let plan = &known.experiment.plans()[0];
@@ -232,7 +232,7 @@ const COVERED: &str = "
         .filter((flag) => over(text.getBoundingClientRect(), flag.getBoundingClientRect())).map((flag) => `${flag.textContent} on ${text.textContent}`));";
 
 #[test]
-fn no_handle_and_no_flag_lies_on_a_reading() -> Result<()> {
+fn handles_and_flags_do_not_cover_a_reading() -> Result<()> {
     in_browser(|page| async move {
         for (width, height) in [(1440, 900), (390, 844)] {
             page.screen(width, height).await?;

@@ -69,7 +69,7 @@ const MOCK: &str = "(role, json, stays) => {
 }";
 
 /// Opens the page with the mock: there before the page's scripts, or, where a driver has no means for that, after them and
-/// before the dialog, which is the first to look for ports (`the_page_looks_for_ports_with_the_dialog_alone`).
+/// before the dialog, which is the first to look for ports (`ports_are_searched_only_with_the_dialog_open`).
 pub(crate) async fn open_with(page: &Session, fragment: &str, role: &str, json: &str) -> Result<()> {
     open_at(page, fragment, (json, role, false)).await
 }

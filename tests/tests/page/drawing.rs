@@ -64,7 +64,7 @@ fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
 }
 
 #[test]
-fn the_strip_of_the_whole_run_is_made_when_it_is_shown_again() -> Result<()> {
+fn the_overview_is_drawn_when_it_is_shown_again() -> Result<()> {
     const STRIP: &str = "document.getElementById('overview')";
     in_browser(|page| async move {
         page.open("").await?;
@@ -84,7 +84,7 @@ fn the_strip_of_the_whole_run_is_made_when_it_is_shown_again() -> Result<()> {
 }
 
 #[test]
-fn the_page_comes_with_the_headers_and_the_policy_that_its_folder_states() -> Result<()> {
+fn the_page_is_served_with_its_headers_and_policy() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let given: BTreeMap<String, String> = page
@@ -120,7 +120,7 @@ fn the_page_comes_with_the_headers_and_the_policy_that_its_folder_states() -> Re
 }
 
 #[test]
-fn nothing_is_asked_of_another_host() -> Result<()> {
+fn no_request_goes_to_another_host() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.preset("sonobe-2011-table").await?;

@@ -17,7 +17,7 @@ fn digits(text: &str) -> String {
 }
 
 #[test]
-fn a_typed_distance_is_computed_drawn_and_taken_back() -> Result<()> {
+fn a_typed_distance_is_computed_drawn_and_undone() -> Result<()> {
     in_browser(|page| async move {
         let (before, after) = (Known::of("{}")?, Known::of(&with_distance(1200.0))?);
         page.open("").await?;
@@ -49,7 +49,7 @@ fn a_typed_distance_is_computed_drawn_and_taken_back() -> Result<()> {
 }
 
 #[test]
-fn prefixes_units_and_times_are_taken_as_they_are_written() -> Result<()> {
+fn prefixes_units_and_times_are_accepted_as_people_type_them() -> Result<()> {
     let rows = [
         (DISTANCE, "6.4 k", with_distance(6400.0)),
         (DISTANCE, "-180 \u{b0}", with_distance(1.0).replace(r#"{"steps":1}"#, r#"{"deg":-180}"#)),
@@ -83,7 +83,7 @@ fn with_move(settings: &str) -> String {
 }
 
 #[test]
-fn a_box_of_cycles_shows_cycles_and_bytes_are_taken_as_programs_write_them() -> Result<()> {
+fn cycle_fields_show_cycles_and_byte_fields_accept_hex() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.fill("bus.pulse_width_cycles", "3 us").await?;
@@ -100,7 +100,7 @@ fn a_box_of_cycles_shows_cycles_and_bytes_are_taken_as_programs_write_them() -> 
 }
 
 #[test]
-fn an_impossible_value_says_range_and_remedy_and_the_last_result_stays() -> Result<()> {
+fn an_invalid_value_shows_range_and_remedy_and_the_last_result() -> Result<()> {
     let rows = [
         ("bus.slots", "200", r#"{"bus":{"slots":200}}"#),
         ("bus.slots", "300", r#"{"bus":{"slots":300}}"#),
@@ -145,7 +145,7 @@ fn an_impossible_value_says_range_and_remedy_and_the_last_result_stays() -> Resu
 }
 
 #[test]
-fn several_problems_are_shown_at_once_and_each_goes_when_it_is_mended() -> Result<()> {
+fn all_problems_are_shown_and_each_disappears_when_fixed() -> Result<()> {
     let wrong = [
         ("bus.slots", "200", "100", "127"),
         ("bus.queue_depth", "0", "16", "255"),
@@ -190,7 +190,7 @@ fn several_problems_are_shown_at_once_and_each_goes_when_it_is_mended() -> Resul
 }
 
 #[test]
-fn lists_of_segments_are_typed_a_line_each_and_wrong_ones_are_told_by_their_line() -> Result<()> {
+fn segments_are_typed_as_lines_and_errors_name_their_line() -> Result<()> {
     const LIST: &str = "source.segments.channels[0].segments";
     let of = |segments: &str| {
         format!(r#"{{"source":{{"segments":{{"channels":[{{"segments":[{segments}]}}]}}}}}}"#)

@@ -10,7 +10,7 @@ use crate::{
 };
 
 #[test]
-fn without_webassembly_the_page_says_so() -> Result<()> {
+fn a_browser_without_webassembly_gets_a_message() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts("delete globalThis.WebAssembly;").await?;
         page.load("").await?;
@@ -62,7 +62,7 @@ const SHORTEN: &str = "const input = document.querySelector(arguments[0]);
     })();";
 
 #[test]
-fn a_keystroke_costs_one_reading_and_one_plan_also_with_its_run_link_and_study() -> Result<()> {
+fn a_keystroke_parses_and_plans_once() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(REACH).await?;
         page.open("").await?;
@@ -104,7 +104,7 @@ fn a_keystroke_costs_one_reading_and_one_plan_also_with_its_run_link_and_study()
 }
 
 #[test]
-fn a_cancelled_run_goes_on_nowhere() -> Result<()> {
+fn a_canceled_run_stops_completely() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(REACH).await?;
         begin_long_run(&page).await?;
@@ -126,7 +126,7 @@ fn a_cancelled_run_goes_on_nowhere() -> Result<()> {
 }
 
 #[test]
-fn an_engine_that_hears_no_cancel_is_replaced_and_makes_the_last_result_again() -> Result<()> {
+fn an_unresponsive_engine_is_replaced_and_recomputes_the_result() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&with_distance(1200.0))?;
         page.before_scripts(REACH).await?;
@@ -155,7 +155,7 @@ fn an_engine_that_hears_no_cancel_is_replaced_and_makes_the_last_result_again() 
 }
 
 #[test]
-fn what_is_asked_for_while_a_cancel_is_not_heard_is_run() -> Result<()> {
+fn requests_during_an_unanswered_cancel_are_executed() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(REACH).await?;
         begin_long_run(&page).await?;
@@ -177,7 +177,7 @@ async fn crash(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn a_crash_of_the_engine_is_told_keeps_the_form_and_is_mended() -> Result<()> {
+fn a_crash_of_the_engine_is_reported_and_repaired() -> Result<()> {
     in_browser(|page| async move {
         let (first, second) = (Known::of(&with_distance(1200.0))?, Known::of(&with_distance(2400.0))?);
         page.before_scripts(REACH).await?;
@@ -207,7 +207,7 @@ fn a_crash_of_the_engine_is_told_keeps_the_form_and_is_mended() -> Result<()> {
 }
 
 #[test]
-fn an_engine_that_cannot_be_loaded_is_told() -> Result<()> {
+fn an_engine_that_cannot_be_loaded_is_reported() -> Result<()> {
     in_browser(|page| async move {
         // Every worker ends in an error of its own before it hears anything.
         page.before_scripts(

@@ -114,16 +114,16 @@ async fn all(page: Session) -> Result<()> {
 }
 
 #[test]
-fn chromium_does_the_main_job_and_gives_the_golden_digests() -> Result<()> {
+fn chromium_completes_the_main_task_with_the_golden_digests() -> Result<()> {
     in_engine(Browser::Chromium, all)
 }
 
 #[test]
-fn firefox_does_the_main_job_and_gives_the_golden_digests() -> Result<()> {
+fn firefox_completes_the_main_task_with_the_golden_digests() -> Result<()> {
     in_engine(Browser::Firefox, all)
 }
 
 #[test]
-fn webkit_does_the_main_job_and_gives_the_golden_digests() -> Result<()> {
+fn webkit_completes_the_main_task_with_the_golden_digests() -> Result<()> {
     in_engine(Browser::WebKit, all)
 }

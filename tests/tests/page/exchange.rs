@@ -29,7 +29,7 @@ fn link(known: &Known, trace: &[Record]) -> String {
 }
 
 #[test]
-fn whoever_opens_a_link_is_told_that_the_run_is_the_senders_until_it_is_edited() -> Result<()> {
+fn an_opened_link_is_labeled_as_the_senders_until_it_is_edited() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&with_distance(1200.0))?;
         page.open(&format!("#{}", known.link)).await?;
@@ -55,7 +55,7 @@ fn whoever_opens_a_link_is_told_that_the_run_is_the_senders_until_it_is_edited()
 }
 
 #[test]
-fn a_link_of_another_run_says_between_which_edges_the_first_difference_lies_and_shows_it() -> Result<()> {
+fn a_link_of_a_different_run_locates_the_first_difference() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&with_distance(1200.0))?;
         let mut trace = known.recording.trace.clone();
@@ -79,7 +79,7 @@ fn a_link_of_another_run_says_between_which_edges_the_first_difference_lies_and_
 }
 
 #[test]
-fn digests_that_cannot_be_read_are_left_out_with_a_word() -> Result<()> {
+fn unreadable_digests_are_ignored_with_a_message() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&with_distance(1200.0))?;
         let good = link(&known, &known.recording.trace);
@@ -111,7 +111,7 @@ fn digests_that_cannot_be_read_are_left_out_with_a_word() -> Result<()> {
 }
 
 #[test]
-fn the_view_of_a_link_is_shown_and_bad_parts_of_it_are_not() -> Result<()> {
+fn the_view_of_a_link_is_shown_without_its_invalid_parts() -> Result<()> {
     in_browser(|page| async move {
         let preset =
             PRESETS.iter().find(|preset| preset.id == "four-controllers-framed").context("a preset")?;
@@ -145,7 +145,7 @@ pub(crate) async fn drop_file(page: &Session, name: &str, text: &str) -> Result<
 }
 
 #[test]
-fn a_dropped_scenario_is_shown_and_undo_brings_the_own_work_back() -> Result<()> {
+fn a_dropped_scenario_is_shown_and_undo_restores_the_work() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of(&with_distance(800.0))?;
         page.open("").await?;
@@ -188,7 +188,7 @@ fn a_dropped_scenario_is_shown_and_undo_brings_the_own_work_back() -> Result<()>
 }
 
 #[test]
-fn packets_and_edges_that_were_saved_are_taken_in() -> Result<()> {
+fn saved_packets_and_edges_are_imported() -> Result<()> {
     in_browser(|page| async move {
         let preset = PRESETS.iter().find(|preset| preset.id == "song-2021-plateau").context("a preset")?;
         let known = Known::preset(preset)?;

@@ -58,7 +58,7 @@ fn cut(trace: &[Record], start: u64, end: u64) -> Option<Vec<Record>> {
 }
 
 #[test]
-fn files_of_the_whole_run_and_of_a_stretch_are_the_cores_bytes() -> Result<()> {
+fn exported_files_have_the_bytes_of_the_core() -> Result<()> {
     in_browser(|page| async move {
         // More rows than one piece has.
         let known = Known::of(
@@ -111,7 +111,7 @@ fn files_of_the_whole_run_and_of_a_stretch_are_the_cores_bytes() -> Result<()> {
 }
 
 #[test]
-fn tables_have_the_numbers_of_the_views_and_a_long_file_can_be_left_off() -> Result<()> {
+fn tables_match_the_views_and_long_exports_can_be_canceled() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(KEEP).await?;
         page.open("").await?;

@@ -78,7 +78,7 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
 }
 
 #[test]
-fn noise_is_repeated_away_and_its_seed_changes_the_run() -> Result<()> {
+fn repetitions_overcome_noise_and_its_seed_changes_the_run() -> Result<()> {
     let with = |seed: u32| {
         format!(r#"{{"line":{{"protocol":"framed","noise":{{"seed":{seed},"flipped_bits_ppm":1000}}}}}}"#)
     };
@@ -104,7 +104,7 @@ fn noise_is_repeated_away_and_its_seed_changes_the_run() -> Result<()> {
 }
 
 #[test]
-fn a_host_that_gives_up_says_so_in_the_header() -> Result<()> {
+fn the_header_reports_a_host_that_gives_up() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.choose(&field("line.protocol"), "framed").await?;
@@ -116,7 +116,7 @@ fn a_host_that_gives_up_says_so_in_the_header() -> Result<()> {
 }
 
 #[test]
-fn what_is_wrong_with_host_and_noise_is_said_at_its_field() -> Result<()> {
+fn errors_of_host_and_noise_are_shown_at_their_field() -> Result<()> {
     let rows = [
         ("line.host.ticks_per_frame", "33", r#"{"line":{"host":{"ticks_per_frame":33}}}"#),
         ("line.host.max_attempts", "0", r#"{"line":{"host":{"attempts":0}}}"#),

@@ -86,7 +86,7 @@ async fn is_brute_force(page: &Session, known: &Known, window: (u64, u64)) -> Re
 }
 
 #[test]
-fn the_picture_is_that_of_every_record_dense_or_lone() -> Result<()> {
+fn the_picture_shows_every_record_dense_or_isolated() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(GLITCHED)?;
         page.open(&format!("#{}", known.link)).await?;

@@ -123,7 +123,7 @@ async fn stands_still(page: &Session, canvas: &str) -> Result<Vec<u8>> {
 }
 
 #[test]
-fn curves_and_pulses_look_as_they_did() -> Result<()> {
+fn pictures_of_curves_and_pulses_are_unchanged() -> Result<()> {
     in_browser(|page| async move {
         let preset = PRESETS.iter().find(|preset| preset.id == "song-2021-one-turn").context("the preset")?;
         let known = Known::preset(preset)?;
@@ -179,7 +179,7 @@ fn line(top: u32, thick: u32, shade: u8) -> Picture {
 }
 
 #[test]
-fn a_line_that_has_moved_is_told_and_a_smoother_edge_is_not() {
+fn a_moved_line_is_a_difference_and_a_smoother_edge_is_none() {
     let golden = line(100, 4, 0);
     for (other, differs) in [
         (line(100, 4, 0), false),

@@ -23,7 +23,7 @@ async fn refused(page: &Session, what: &str, fragment: &str, says: &str) -> Resu
 }
 
 #[test]
-fn a_link_that_does_not_open_says_why_and_the_default_motion_is_drawn() -> Result<()> {
+fn an_invalid_link_shows_the_reason_and_the_default_motion() -> Result<()> {
     in_browser(|page| async move {
         let link = Known::of(&with_distance(1200.0))?.link;
         let cut = link.get(..link.len() - 12).context("long enough")?;
@@ -77,7 +77,7 @@ const MUCH: &str = r#"{"title":"Two million steps","source":{"motion":{"axes":[{
     {"cosine":{"distance":{"steps":2200000},"duration_s":60,"ramp_s":10}}]}]}}}"#;
 
 #[test]
-fn too_much_work_fills_the_form_and_waits_to_be_told_to_run() -> Result<()> {
+fn a_link_with_too_much_work_waits_for_confirmation() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(MUCH)?;
         ensure!(known.experiment.cost().records > 4_000_000, "{:?}", known.experiment.cost());
@@ -107,7 +107,7 @@ fn too_much_work_fills_the_form_and_waits_to_be_told_to_run() -> Result<()> {
 }
 
 #[test]
-fn a_long_run_tells_its_progress_and_can_be_cancelled() -> Result<()> {
+fn a_long_run_shows_its_progress_and_can_be_canceled() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&MUCH.replace("2200000", "22000000").replace(":60", ":600"))?;
         page.open(&format!("#{}", known.link)).await?;

@@ -140,7 +140,7 @@ async fn leave(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn a_visitor_meets_nothing_that_the_one_before_left_in_the_same_browser() -> Result<()> {
+fn a_visitor_finds_nothing_of_the_previous_visitor() -> Result<()> {
     in_browser_that_keeps(|page| async move {
         let first = found(&page).await?;
         leave(&page).await?;

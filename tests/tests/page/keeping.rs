@@ -13,7 +13,7 @@ use crate::{
 const SAVED: &str = "localStorage.getItem('stepscope.scenario') ?? ''";
 
 #[test]
-fn work_with_a_problem_in_it_survives_a_reload_and_is_no_link() -> Result<()> {
+fn invalid_work_survives_a_reload_and_has_no_link() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.fill("bus.queue_depth", "7").await?;
@@ -43,7 +43,7 @@ fn work_with_a_problem_in_it_survives_a_reload_and_is_no_link() -> Result<()> {
 }
 
 #[test]
-fn work_from_before_an_edited_link_comes_back_by_undo_after_a_reload() -> Result<()> {
+fn undo_after_a_reload_restores_the_work_before_an_edited_link() -> Result<()> {
     in_browser(|page| async move {
         let (own, shared) = (Known::of(&with_distance(1234.0))?, Known::of(&with_distance(800.0))?);
         page.open("").await?;
@@ -64,7 +64,7 @@ fn work_from_before_an_edited_link_comes_back_by_undo_after_a_reload() -> Result
 }
 
 #[test]
-fn what_was_typed_into_a_field_that_is_gone_holds_nothing() -> Result<()> {
+fn a_removed_field_with_an_error_blocks_nothing() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.fill("source.motion.axes[0].moves[0].cosine.duration_s", "zz").await?;
@@ -82,7 +82,7 @@ async fn edit_and_press(page: &Session, path: &str, text: &str, button: &str) ->
 }
 
 #[test]
-fn structure_buttons_act_on_what_the_form_holds_when_they_are_pressed() -> Result<()> {
+fn structure_buttons_act_on_the_current_form() -> Result<()> {
     const MOVE: &str = r#"{"constant":{"distance":{"steps":40},"speed":{"steps_s":1000}}}"#;
     let motion = |axes: &str, rest: &str| format!(r#"{{{rest}"source":{{"motion":{{"axes":[{axes}]}}}}}}"#);
     let axis = |moves: usize| format!(r#"{{"moves":[{}]}}"#, vec![MOVE; moves].join(","));
@@ -161,7 +161,7 @@ fn structure_buttons_act_on_what_the_form_holds_when_they_are_pressed() -> Resul
 }
 
 #[test]
-fn another_kind_of_move_keeps_what_both_have_and_the_first_kind_comes_back_whole() -> Result<()> {
+fn changing_the_kind_of_a_move_and_back_loses_nothing() -> Result<()> {
     const MOVE: &str = "source.motion.axes[0].moves[0]";
     let at = |field: &str| format!("{MOVE}.{field}");
     in_browser(|page| async move {
@@ -186,7 +186,7 @@ fn another_kind_of_move_keeps_what_both_have_and_the_first_kind_comes_back_whole
 }
 
 #[test]
-fn a_changed_preset_is_called_so_until_it_has_a_name() -> Result<()> {
+fn a_changed_preset_is_labeled_until_it_has_a_name() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.preset("song-2021-one-turn").await?;
@@ -225,7 +225,7 @@ const BETWEEN_RUNS: &str = "const input = document.querySelector(arguments[0]);
     });";
 
 #[test]
-fn while_a_run_is_refused_derived_figures_are_the_last_runs_and_dimmed() -> Result<()> {
+fn invalid_input_dims_the_figures_of_the_last_run() -> Result<()> {
     const NOTE: &str = "document.querySelector('[data-note]')";
     in_browser(|page| async move {
         page.open("").await?;
@@ -242,7 +242,7 @@ fn while_a_run_is_refused_derived_figures_are_the_last_runs_and_dimmed() -> Resu
 }
 
 #[test]
-fn a_tab_keeps_its_own_work_and_is_offered_another_ones() -> Result<()> {
+fn a_tab_keeps_its_work_and_offers_that_of_another() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.fill(DISTANCE, "1234").await?;
@@ -277,7 +277,7 @@ fn a_tab_keeps_its_own_work_and_is_offered_another_ones() -> Result<()> {
 }
 
 #[test]
-fn nothing_moves_between_press_and_release() -> Result<()> {
+fn the_layout_does_not_shift_between_press_and_release() -> Result<()> {
     const BELOW: &str = "source.motion.axes[0].moves[0].cosine.ramp_s";
     in_browser(|page| async move {
         page.open("").await?;
@@ -304,7 +304,7 @@ fn nothing_moves_between_press_and_release() -> Result<()> {
 }
 
 #[test]
-fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
+fn experiments_are_saved_by_name_and_undo_survives_a_reload() -> Result<()> {
     const NAMES: &str = "[...document.querySelectorAll('#experiment-list li > :first-child')].map((each) => each.textContent)";
     in_browser(|page| async move {
         page.open("").await?;
@@ -345,7 +345,7 @@ fn own_experiments_are_kept_by_name_and_undo_survives_a_reload() -> Result<()> {
 }
 
 #[test]
-fn a_motion_too_fast_for_its_bus_is_offered_what_would_do() -> Result<()> {
+fn a_motion_too_fast_for_its_bus_has_remedies() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.fill("bus.step_period_cycles", "2000").await?;
@@ -366,7 +366,7 @@ fn a_motion_too_fast_for_its_bus_is_offered_what_would_do() -> Result<()> {
 }
 
 #[test]
-fn what_is_kept_and_broken_stops_nothing() -> Result<()> {
+fn damaged_storage_does_not_stop_the_page() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         for (place, key) in [

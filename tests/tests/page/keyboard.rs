@@ -115,7 +115,7 @@ async fn still(page: &Session, name: &str) -> Result<()> {
 }
 
 #[test]
-fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
+fn an_experiment_can_be_done_with_keys_only() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.allow_clipboard().await?;
@@ -183,7 +183,7 @@ fn a_whole_experiment_is_done_by_keys_alone() -> Result<()> {
 }
 
 #[test]
-fn tab_reaches_everything_in_the_order_of_the_page() -> Result<()> {
+fn tab_reaches_every_control_in_the_order_of_the_page() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         for (preset, width) in [("", 1440), ("driver-timing-broken", 1440), ("", 390)] {

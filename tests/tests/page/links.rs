@@ -30,7 +30,7 @@ pub(crate) fn whole(page: &Session, known: &Known) -> String {
 }
 
 #[test]
-fn a_copied_link_gives_a_stranger_the_same_form_and_the_same_digest() -> Result<()> {
+fn a_copied_link_restores_the_form_and_the_digest() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&with_distance(1200.0))?;
         page.open("").await?;
@@ -52,7 +52,7 @@ fn a_copied_link_gives_a_stranger_the_same_form_and_the_same_digest() -> Result<
 }
 
 #[test]
-fn copies_that_a_chat_program_changed_still_open() -> Result<()> {
+fn links_changed_by_chat_programs_still_open() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&with_distance(2400.0))?;
         let link = &known.link;
@@ -66,7 +66,7 @@ fn copies_that_a_chat_program_changed_still_open() -> Result<()> {
 }
 
 #[test]
-fn a_refused_clipboard_leaves_the_link_to_be_copied_by_hand() -> Result<()> {
+fn without_clipboard_access_the_link_can_be_copied_manually() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts("globalThis.Clipboard && (Clipboard.prototype.writeText = () => Promise.reject(new Error('refused')));").await?;
         page.open("").await?;
@@ -82,7 +82,7 @@ fn a_refused_clipboard_leaves_the_link_to_be_copied_by_hand() -> Result<()> {
 }
 
 #[test]
-fn the_address_follows_the_typing_without_growing_the_history() -> Result<()> {
+fn the_address_follows_edits_without_adding_to_the_history() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let before: u32 = page.eval("history.length").await?;
@@ -97,7 +97,7 @@ fn the_address_follows_the_typing_without_growing_the_history() -> Result<()> {
 }
 
 #[test]
-fn a_link_that_is_put_into_the_address_is_heard_and_undo_brings_the_own_work_back() -> Result<()> {
+fn a_link_pasted_into_the_address_opens_and_can_be_undone() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of(&with_distance(800.0))?;
         let preset = PRESETS.first().context("there are presets")?;
@@ -124,7 +124,7 @@ fn a_link_that_is_put_into_the_address_is_heard_and_undo_brings_the_own_work_bac
 }
 
 #[test]
-fn the_own_work_is_there_again_on_the_next_visit_whatever_link_was_opened_between() -> Result<()> {
+fn work_is_restored_after_a_visit_with_a_link() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of(&with_distance(800.0))?;
         let shared = Known::preset(PRESETS.first().context("there are presets")?)?;

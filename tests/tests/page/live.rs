@@ -32,7 +32,7 @@ async fn beside(page: &Session) -> Result<Beside> {
 }
 
 #[test]
-fn a_stream_is_confirmed_to_its_end_with_the_models_positions() -> Result<()> {
+fn a_stream_is_confirmed_with_the_positions_of_the_model() -> Result<()> {
     in_browser(|page| async move {
         let known = open(&page, FRAMED, "serve").await?;
         let mut wrong = Vec::new();
@@ -65,7 +65,7 @@ fn a_stream_is_confirmed_to_its_end_with_the_models_positions() -> Result<()> {
 }
 
 #[test]
-fn the_page_looks_for_ports_with_the_dialog_alone() -> Result<()> {
+fn ports_are_searched_only_with_the_dialog_open() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(FRAMED)?;
         open_with(&page, &format!("#{}", known.link), "serve", FRAMED).await?;
@@ -79,7 +79,7 @@ fn the_page_looks_for_ports_with_the_dialog_alone() -> Result<()> {
 }
 
 #[test]
-fn a_port_that_was_allowed_before_is_taken_without_the_chooser_and_opened_by_a_press() -> Result<()> {
+fn an_allowed_port_is_selected_without_the_chooser() -> Result<()> {
     in_browser(|page| async move {
         let known = open(&page, FRAMED, "allowed").await?;
         page.until_equal(
@@ -97,7 +97,7 @@ fn a_port_that_was_allowed_before_is_taken_without_the_chooser_and_opened_by_a_p
 }
 
 #[test]
-fn two_controllers_have_each_their_rows_and_their_end() -> Result<()> {
+fn two_controllers_have_separate_rows_and_results() -> Result<()> {
     in_browser(|page| async move {
         open(&page, TWO, "serve").await?;
         start(&page).await?;
@@ -112,7 +112,7 @@ fn two_controllers_have_each_their_rows_and_their_end() -> Result<()> {
 }
 
 #[test]
-fn stop_in_the_middle_is_confirmed_and_reported() -> Result<()> {
+fn stop_during_a_stream_is_confirmed_and_reported() -> Result<()> {
     in_browser(|page| async move {
         open(&page, LONG, "serve").await?;
         start(&page).await?;
@@ -138,7 +138,7 @@ fn stop_in_the_middle_is_confirmed_and_reported() -> Result<()> {
 }
 
 #[test]
-fn escape_is_stop_and_a_dialog_that_goes_stops_first() -> Result<()> {
+fn escape_stops_and_a_closing_dialog_stops_first() -> Result<()> {
     for leave in ["escape", "document.querySelector('dialog.live').close() ?? null"] {
         in_browser(|page| async move {
             open(&page, LONG, "serve").await?;
@@ -158,7 +158,7 @@ fn escape_is_stop_and_a_dialog_that_goes_stops_first() -> Result<()> {
 }
 
 #[test]
-fn a_silent_device_is_given_up_and_told() -> Result<()> {
+fn a_silent_device_ends_the_stream_with_a_report() -> Result<()> {
     in_browser(|page| async move {
         open(&page, &FRAMED.replace(r#","host":{"attempts":40}"#, ""), "silent").await?;
         start(&page).await?;
@@ -173,7 +173,7 @@ fn a_silent_device_is_given_up_and_told() -> Result<()> {
 }
 
 #[test]
-fn a_lost_port_ends_the_stream_and_is_told_with_what_is_known() -> Result<()> {
+fn a_lost_port_ends_the_stream_and_reports_confirmed_ticks() -> Result<()> {
     in_browser(|page| async move {
         open(&page, LONG, "serve").await?;
         start(&page).await?;
@@ -189,7 +189,7 @@ fn a_lost_port_ends_the_stream_and_is_told_with_what_is_known() -> Result<()> {
 }
 
 #[test]
-fn without_ports_streams_or_anything_to_confirm_the_buttons_are_off_and_say_why() -> Result<()> {
+fn unavailable_buttons_are_disabled_with_a_reason() -> Result<()> {
     in_browser(|page| async move {
         for (lack, why) in [
             (
@@ -239,7 +239,7 @@ fn without_ports_streams_or_anything_to_confirm_the_buttons_are_off_and_say_why(
 }
 
 #[test]
-fn a_port_that_is_taken_is_told_and_nothing_runs() -> Result<()> {
+fn a_port_in_use_is_reported_and_nothing_runs() -> Result<()> {
     in_browser(|page| async move {
         open(&page, FRAMED, "taken").await?;
         page.click("#live-choose").await?;
@@ -253,7 +253,7 @@ fn a_port_that_is_taken_is_told_and_nothing_runs() -> Result<()> {
 }
 
 #[test]
-fn the_page_answers_a_host_and_the_session_opens_with_its_digest() -> Result<()> {
+fn the_page_serves_a_host_and_its_session_keeps_its_digest() -> Result<()> {
     in_browser(|page| async move {
         let known = open(&page, FRAMED, "stream").await?;
         answers_a_host(&page, &known).await

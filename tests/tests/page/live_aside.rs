@@ -29,7 +29,7 @@ pub(crate) async fn start_long(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn replies_come_in_the_packets_view_while_the_page_is_in_use_and_stop_in_sight() -> Result<()> {
+fn replies_are_listed_during_a_stream_and_stop_is_visible() -> Result<()> {
     in_browser(|page| async move {
         for (width, height) in [(1440, 900), (390, 844)] {
             page.screen(width, height).await?;
@@ -75,7 +75,7 @@ fn replies_come_in_the_packets_view_while_the_page_is_in_use_and_stop_in_sight()
 }
 
 #[test]
-fn stop_while_the_port_is_opened_is_all_that_is_sent() -> Result<()> {
+fn stop_while_the_port_opens_is_the_only_frame_sent() -> Result<()> {
     in_browser(|page| async move {
         open(&page, LONG, "serve").await?;
         page.eval::<Value>("(window.held = new Promise((admit) => { window.admit = admit; })) && null")
@@ -95,7 +95,7 @@ fn stop_while_the_port_is_opened_is_all_that_is_sent() -> Result<()> {
 }
 
 #[test]
-fn the_dialog_that_comes_in_front_again_is_about_the_experiment_as_it_is_then() -> Result<()> {
+fn a_reopened_dialog_shows_the_current_experiment() -> Result<()> {
     in_browser(|page| async move {
         open(&page, FRAMED, "serve").await?;
         start(&page).await?;
@@ -119,7 +119,7 @@ fn the_dialog_that_comes_in_front_again_is_about_the_experiment_as_it_is_then() 
 }
 
 #[test]
-fn a_soft_device_shows_its_positions_and_leaves_the_wall_clock_of_its_session() -> Result<()> {
+fn a_simulated_device_shows_positions_and_saves_its_times() -> Result<()> {
     in_browser(|page| async move {
         open(&page, FRAMED, "stream").await?;
         page.eval::<Value>(&format!("(() => {{ {KEEP} return null; }})()")).await?;

@@ -63,16 +63,16 @@ async fn all(page: Session) -> Result<()> {
 }
 
 #[test]
-fn chromium_streams_to_a_verified_end_and_answers_a_host() -> Result<()> {
+fn chromium_streams_to_a_verified_end_and_serves_a_host() -> Result<()> {
     in_engine(Browser::Chromium, all)
 }
 
 #[test]
-fn firefox_streams_to_a_verified_end_and_answers_a_host() -> Result<()> {
+fn firefox_streams_to_a_verified_end_and_serves_a_host() -> Result<()> {
     in_engine(Browser::Firefox, all)
 }
 
 #[test]
-fn webkit_streams_to_a_verified_end_and_answers_a_host_or_says_why_not() -> Result<()> {
+fn webkit_streams_and_serves_or_explains_why_it_cannot() -> Result<()> {
     in_engine(Browser::WebKit, all)
 }

@@ -88,7 +88,7 @@ async fn start_as(page: &Session, known: &Known, role: &str) -> Result<()> {
 }
 
 #[test]
-fn a_stream_over_a_port_of_the_system_is_verified_and_the_device_says_the_same() -> Result<()> {
+fn a_stream_over_a_system_port_is_verified_by_the_device() -> Result<()> {
     let known = Known::of(FRAMED)?;
     let folder = Folder::temporary()?;
     let device = device(&folder, FRAMED)?;
@@ -108,7 +108,7 @@ fn a_stream_over_a_port_of_the_system_is_verified_and_the_device_says_the_same()
 }
 
 #[test]
-fn a_host_at_a_port_of_the_system_is_answered_and_its_session_opens_with_its_digest() -> Result<()> {
+fn a_host_at_a_system_port_is_served_and_recorded() -> Result<()> {
     let known = Known::of(FRAMED)?;
     let folder = Folder::temporary()?;
     let (_socat, own, other) = pair()?;

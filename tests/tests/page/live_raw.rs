@@ -43,7 +43,7 @@ async fn start_long(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn raw_packets_go_with_their_lead_and_the_device_does_them_but_nothing_is_called_verified() -> Result<()> {
+fn raw_packets_are_executed_but_not_reported_as_verified() -> Result<()> {
     in_browser(|page| async move {
         let known = open_beside(&page, (SHORT, "serve", true)).await?;
         let host =
@@ -85,7 +85,7 @@ fn raw_packets_go_with_their_lead_and_the_device_does_them_but_nothing_is_called
 }
 
 #[test]
-fn stop_ends_the_sending_of_raw_packets_and_the_device_does_what_it_has() -> Result<()> {
+fn stop_ends_raw_packets_and_the_device_finishes_its_queue() -> Result<()> {
     in_browser(|page| async move {
         let known = open_beside(&page, (LONG, "serve", true)).await?;
         // Nothing is to be stopped, and a raw line has no STOP that could be sent all the same.
@@ -113,7 +113,7 @@ fn stop_ends_the_sending_of_raw_packets_and_the_device_does_what_it_has() -> Res
 }
 
 #[test]
-fn replies_of_an_earlier_stream_are_gone_when_raw_packets_go() -> Result<()> {
+fn raw_packets_clear_the_replies_of_an_earlier_stream() -> Result<()> {
     in_browser(|page| async move {
         open_beside(&page, (FRAMED, "serve", true)).await?;
         ensure!(page.eval::<bool>("document.querySelector('.live-replies .note').hidden").await?);
@@ -138,7 +138,7 @@ fn replies_of_an_earlier_stream_are_gone_when_raw_packets_go() -> Result<()> {
 }
 
 #[test]
-fn a_lost_port_ends_raw_packets_and_is_told() -> Result<()> {
+fn a_lost_port_ends_raw_packets_and_is_reported() -> Result<()> {
     in_browser(|page| async move {
         let known = open_beside(&page, (LONG, "serve", true)).await?;
         start_long(&page).await?;
@@ -157,7 +157,7 @@ fn a_lost_port_ends_raw_packets_and_is_told() -> Result<()> {
 }
 
 #[test]
-fn a_queue_that_does_not_hold_the_lead_is_refused_with_its_numbers() -> Result<()> {
+fn a_lead_longer_than_the_queue_is_rejected_with_its_numbers() -> Result<()> {
     in_browser(|page| async move {
         for json in ["{}", r#"{"bus":{"step_period_cycles":1000,"queue_depth":20}}"#] {
             let known = Known::of(json)?;

@@ -37,7 +37,7 @@ const OWN: &str = "(() => {
 })()";
 
 #[test]
-fn stop_is_in_reach_in_front_of_every_other_dialog() -> Result<()> {
+fn stop_is_reachable_in_front_of_every_dialog() -> Result<()> {
     in_browser(|page| async move {
         for (width, height) in [(1440, 900), (390, 844)] {
             page.screen(width, height).await?;
@@ -71,7 +71,7 @@ fn stop_is_in_reach_in_front_of_every_other_dialog() -> Result<()> {
 const OTHER: &str = r#"{"line":{"baud":57600},"source":{"line":{"sends":[{"start_cycle":400,"bytes":"00"}]}},"run_cycles":100000}"#;
 
 #[test]
-fn stop_goes_as_the_stream_did_until_it_is_confirmed() -> Result<()> {
+fn stop_uses_the_settings_of_the_stream_until_confirmed() -> Result<()> {
     in_browser(|page| async move {
         start_long(&page).await?;
         page.eval::<Value>("peer.lose() ?? null").await?;
@@ -105,7 +105,7 @@ fn stop_goes_as_the_stream_did_until_it_is_confirmed() -> Result<()> {
 }
 
 #[test]
-fn stop_that_comes_too_late_for_a_stream_goes_after_it() -> Result<()> {
+fn a_stop_after_the_end_of_a_stream_is_sent_separately() -> Result<()> {
     in_browser(|page| async move {
         open(&page, LONG, "serve").await?;
         page.eval::<Value>(OWN).await?;
@@ -127,7 +127,7 @@ fn stop_that_comes_too_late_for_a_stream_goes_after_it() -> Result<()> {
 }
 
 #[test]
-fn after_a_verified_end_stop_goes_as_the_experiment_has_it() -> Result<()> {
+fn after_a_verified_end_stop_uses_the_current_settings() -> Result<()> {
     in_browser(|page| async move {
         open(&page, FRAMED, "serve").await?;
         start(&page).await?;
@@ -146,7 +146,7 @@ fn after_a_verified_end_stop_goes_as_the_experiment_has_it() -> Result<()> {
 }
 
 #[test]
-fn an_experiment_that_changed_behind_the_dialog_is_not_started_unseen() -> Result<()> {
+fn an_experiment_changed_behind_the_dialog_is_not_started() -> Result<()> {
     in_browser(|page| async move {
         open(&page, FRAMED, "serve").await?;
         page.click("#live-choose").await?;
@@ -171,7 +171,7 @@ fn an_experiment_that_changed_behind_the_dialog_is_not_started_unseen() -> Resul
 }
 
 #[test]
-fn a_part_of_the_page_that_fails_gives_the_port_back_and_is_replaced() -> Result<()> {
+fn a_failed_worker_releases_the_port_and_is_replaced() -> Result<()> {
     in_browser(|page| async move {
         let known = open(&page, FRAMED, "serve").await?;
         page.eval::<Value>(OWN).await?;
@@ -195,7 +195,7 @@ fn a_part_of_the_page_that_fails_gives_the_port_back_and_is_replaced() -> Result
 }
 
 #[test]
-fn a_port_that_stays_open_is_told_and_no_button_is_left_for_it() -> Result<()> {
+fn a_port_that_stays_open_is_reported_and_disables_buttons() -> Result<()> {
     in_browser(|page| async move {
         open(&page, LONG, "serve").await?;
         page.eval::<Value>(OWN).await?;

@@ -37,7 +37,7 @@ async fn seen_fetches(page: &Session) -> Result<usize> {
 }
 
 #[test]
-fn all_that_loads_is_of_this_site_and_each_module_is_fetched_once() -> Result<()> {
+fn each_module_is_loaded_once_from_this_site() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(OBSERVE).await?;
         page.open("").await?;
@@ -63,7 +63,7 @@ fn all_that_loads_is_of_this_site_and_each_module_is_fetched_once() -> Result<()
 }
 
 #[test]
-fn a_link_loads_no_view_that_is_not_on_show() -> Result<()> {
+fn a_link_loads_only_visible_views() -> Result<()> {
     in_browser(|page| async move {
         page.open(&format!("#{}", link_of(&with_distance(1200.0))?)).await?;
         let names: Vec<String> =
@@ -79,7 +79,7 @@ fn a_link_loads_no_view_that_is_not_on_show() -> Result<()> {
 }
 
 #[test]
-fn nothing_moves_while_the_page_comes_in() -> Result<()> {
+fn nothing_moves_while_the_page_loads() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(OBSERVE).await?;
         for (width, height) in [(1440, 900), (1024, 768), (390, 844)] {
@@ -93,7 +93,7 @@ fn nothing_moves_while_the_page_comes_in() -> Result<()> {
 }
 
 #[test]
-fn a_part_that_does_not_come_is_told_of_and_asked_for_again() -> Result<()> {
+fn a_part_that_fails_to_load_is_reported_and_requested_again() -> Result<()> {
     let missing = "The fields could not be loaded";
     in_browser(|page| async move {
         let block = async |files: Value| {

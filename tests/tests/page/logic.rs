@@ -52,7 +52,7 @@ async fn until_reads(page: &Session, what: &str) -> Result<()> {
 }
 
 #[test]
-fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Result<()> {
+fn selecting_bytes_highlights_their_packet_in_all_views() -> Result<()> {
     in_browser(|page| async move {
         let known = preset("glitches-and-breaks")?;
         open(&page, &known).await?;
@@ -92,7 +92,7 @@ fn bytes_and_fields_are_decoded_lit_in_all_views_and_choose_their_packet() -> Re
 }
 
 #[test]
-fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
+fn frames_and_replies_are_decoded_to_fields() -> Result<()> {
     in_sources(|page| async move {
         let known = preset("framed-link")?;
         open(&page, &known).await?;
@@ -142,7 +142,7 @@ fn frames_and_replies_are_decoded_to_their_fields() -> Result<()> {
 }
 
 #[test]
-fn markers_are_set_by_shift_and_a_digit_listed_and_removed() -> Result<()> {
+fn markers_are_set_by_shift_and_digit_listed_and_removed() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         ensure!(!page.visible("#marker-panel").await?, "no table without a marker");
@@ -181,7 +181,7 @@ fn markers_are_set_by_shift_and_a_digit_listed_and_removed() -> Result<()> {
 }
 
 #[test]
-fn the_table_of_edges_is_the_traces_page_after_page() -> Result<()> {
+fn the_edge_table_matches_the_trace_page_by_page() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of("{}")?;
         open(&page, &known).await?;
@@ -214,7 +214,7 @@ fn the_table_of_edges_is_the_traces_page_after_page() -> Result<()> {
 }
 
 #[test]
-fn violations_and_edges_that_there_are_not_are_told_where_one_looks() -> Result<()> {
+fn missing_violations_and_edges_are_reported_in_the_view() -> Result<()> {
     in_browser(|page| async move {
         let known = preset("driver-timing-broken")?;
         open(&page, &known).await?;
@@ -245,7 +245,7 @@ fn violations_and_edges_that_there_are_not_are_told_where_one_looks() -> Result<
 }
 
 #[test]
-fn the_strip_moves_and_resizes_what_is_shown_by_mouse_and_keys() -> Result<()> {
+fn the_overview_moves_and_resizes_the_range_by_mouse_and_keys() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let window = "['window-start', 'window-end'].map((id) => document.getElementById(id).value)";
@@ -279,7 +279,7 @@ fn the_strip_moves_and_resizes_what_is_shown_by_mouse_and_keys() -> Result<()> {
 }
 
 #[test]
-fn a_run_of_segments_has_no_rows_of_a_line() -> Result<()> {
+fn a_run_of_segments_has_no_serial_line_rows() -> Result<()> {
     in_browser(|page| async move {
         let known = preset("sonobe-2011-segments")?;
         open(&page, &known).await?;

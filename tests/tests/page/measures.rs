@@ -57,7 +57,7 @@ fn measured(known: &Known) -> (Measures, [Spectrum; 2]) {
 }
 
 #[test]
-fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
+fn measures_of_axes_match_the_core() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(SINE)?;
         let (found, [ideal, pulses]) = measured(&known);
@@ -122,7 +122,7 @@ fn measures_stand_side_by_side_as_the_core_has_them() -> Result<()> {
 }
 
 #[test]
-fn steps_without_a_motion_are_measured_by_themselves_as_the_core_has_them() -> Result<()> {
+fn measures_of_steps_without_a_motion_match_the_core() -> Result<()> {
     in_browser(|page| async move {
         // To and fro four times, and a channel that stands.
         let list = r#"{"bus":{"channels":2},"source":{"segments":{"channels":[{"segments":[
@@ -174,7 +174,7 @@ fn filtered(spectrum: &Spectrum) -> Option<f64> {
 }
 
 #[test]
-fn the_sensors_bandwidth_is_a_field_and_its_distortion_stands_beside_the_accelerations() -> Result<()> {
+fn distortion_follows_the_bandwidth_of_the_sensor() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&SINE.replace(",\"sensor_hz\":40", ""))?;
         page.open(&format!("#{}", known.link)).await?;

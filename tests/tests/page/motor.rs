@@ -38,7 +38,7 @@ async fn until_found(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn every_preset_with_a_plant_shows_the_cores_verdict_and_numbers() -> Result<()> {
+fn every_preset_with_a_plant_shows_the_results_of_the_core() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         for preset in PLANT_PRESETS {
@@ -67,7 +67,7 @@ fn every_preset_with_a_plant_shows_the_cores_verdict_and_numbers() -> Result<()>
 }
 
 #[test]
-fn of_a_motor_that_stalls_the_view_says_why() -> Result<()> {
+fn the_view_explains_a_stall() -> Result<()> {
     in_browser(|page| async move {
         let preset = PLANT_PRESETS.iter().find(|preset| preset.id == "song-2021-stall").expect("a preset");
         let known = Known::preset(preset)?;
@@ -81,7 +81,7 @@ fn of_a_motor_that_stalls_the_view_says_why() -> Result<()> {
 }
 
 #[test]
-fn a_motor_of_the_list_drives_an_experiment_that_had_none_and_undo_takes_it_away() -> Result<()> {
+fn a_listed_motor_is_added_and_removed_by_undo() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of("{}")?;
         page.open("").await?;
@@ -113,7 +113,7 @@ fn a_motor_of_the_list_drives_an_experiment_that_had_none_and_undo_takes_it_away
 }
 
 #[test]
-fn the_studys_tab_motor_has_what_the_command_finds() -> Result<()> {
+fn the_motor_tab_of_the_study_matches_the_command() -> Result<()> {
     in_browser(|page| async move {
         let preset =
             PLANT_PRESETS.iter().find(|preset| preset.id == "patent-2019-figure-2").expect("a preset");
@@ -140,7 +140,7 @@ fn the_studys_tab_motor_has_what_the_command_finds() -> Result<()> {
 }
 
 #[test]
-fn a_link_keeps_which_of_motion_and_motor_is_open() -> Result<()> {
+fn a_link_stores_whether_motion_or_motor_is_open() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(r#"{"plant":{}}"#)?;
         page.open(&format!("#{}&v=omotion", known.link)).await?;
@@ -155,7 +155,7 @@ fn a_link_keeps_which_of_motion_and_motor_is_open() -> Result<()> {
 }
 
 #[test]
-fn a_further_controllers_motor_has_its_own_curve_and_its_settling_time_goes_into_its_bus() -> Result<()> {
+fn each_controllers_motor_has_its_curve_and_settling_time() -> Result<()> {
     in_browser(|page| async move {
         let json = r#"{"line":{"address":1},"plant":{},"bus":{"channels":2},"controllers":[{"address":2,"bus":{"channels":2},"axes":[{},{}]}],
             "source":{"motion":{"axes":[{},{}]}}}"#;
@@ -180,7 +180,7 @@ fn a_further_controllers_motor_has_its_own_curve_and_its_settling_time_goes_into
 }
 
 #[test]
-fn what_is_unfolded_covers_nothing_and_closes_where_a_motor_comes() -> Result<()> {
+fn an_expanded_list_covers_nothing_and_closes_for_a_motor() -> Result<()> {
     in_browser(|page| async move {
         for (width, height) in [(1366, 768), (390, 844)] {
             page.screen(width, height).await?;
@@ -213,7 +213,7 @@ fn what_is_unfolded_covers_nothing_and_closes_where_a_motor_comes() -> Result<()
 }
 
 #[test]
-fn the_marks_of_lost_steps_go_on_to_the_end_and_all_charts_have_their_room() -> Result<()> {
+fn lost_steps_are_marked_to_the_end_and_all_charts_fit() -> Result<()> {
     in_browser(|page| async move {
         let json = r#"{"plant":{},"source":{"motion":{"engine":"segments","axes":[{"motor":{"load_inertia_g_cm2":2000},
             "moves":[{"cosine":{"distance":{"steps":12800},"duration_s":0.4,"ramp_s":0.02}}]}]}}}"#;

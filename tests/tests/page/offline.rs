@@ -77,7 +77,7 @@ fn the_second_visit_needs_no_network() -> Result<()> {
 }
 
 #[test]
-fn a_newer_version_is_told_waits_for_the_visitor_and_keeps_the_work() -> Result<()> {
+fn a_newer_version_is_offered_and_keeps_the_work() -> Result<()> {
     let folder = copy()?;
     let (web, server) = (folder.0.clone(), Program::server(&folder.0)?);
     in_browser_at(&server.address, |page| async move {
@@ -106,7 +106,7 @@ fn a_newer_version_is_told_waits_for_the_visitor_and_keeps_the_work() -> Result<
 }
 
 #[test]
-fn the_sources_are_not_kept_and_clear_away_what_a_build_left() -> Result<()> {
+fn unbuilt_sources_are_not_cached_and_clear_the_cache_of_a_build() -> Result<()> {
     let folder = copy()?;
     let (web, server) = (folder.0.clone(), Program::server(&folder.0)?);
     in_browser_at(&server.address, |page| async move {
@@ -130,7 +130,7 @@ fn the_sources_are_not_kept_and_clear_away_what_a_build_left() -> Result<()> {
 }
 
 #[test]
-fn the_page_says_which_build_it_is_and_whose_work_is_in_it() -> Result<()> {
+fn the_page_shows_its_build_and_third_party_licenses() -> Result<()> {
     in_browser_that_keeps(|page| async move {
         page.open("").await?;
         let version = page.eval::<String>("document.getElementById('version').textContent").await?;

@@ -58,7 +58,7 @@ const LIT: &str =
     "[...document.querySelectorAll('#packet-bytes > .highlighted')].map((cell) => Number(cell.id.slice(5)))";
 
 #[test]
-fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Result<()> {
+fn search_steps_through_matches_and_filter_hides_other_rows() -> Result<()> {
     let known = preset("framed-noisy-line")?;
     in_browser(move |page| async move {
         open(&page, &known).await?;
@@ -119,7 +119,7 @@ fn a_search_goes_from_match_to_match_and_a_filter_leaves_the_others_out() -> Res
 }
 
 #[test]
-fn an_address_leaves_the_packets_of_the_others_out() -> Result<()> {
+fn an_address_hides_packets_for_other_addresses() -> Result<()> {
     let known = preset("patent-2019-addressed")?;
     in_browser(move |page| async move {
         open(&page, &known).await?;
@@ -166,7 +166,7 @@ async fn inspected(page: &Session, known: &Known, rows: usize) -> Result<()> {
 }
 
 #[test]
-fn the_inspector_reads_frames_and_replies_as_the_core_does() -> Result<()> {
+fn the_inspector_decodes_frames_and_replies_like_the_core() -> Result<()> {
     let known = preset("framed-link")?;
     in_browser(move |page| async move {
         assert_eq!(known.experiment.config().protocol(), Protocol::Framed);
@@ -182,7 +182,7 @@ fn the_inspector_reads_frames_and_replies_as_the_core_does() -> Result<()> {
 }
 
 #[test]
-fn the_inspector_reads_raw_packets_as_the_core_does() -> Result<()> {
+fn the_inspector_decodes_raw_packets_like_the_core() -> Result<()> {
     let known = preset("patent-2019-addressed")?;
     in_browser(move |page| async move {
         open(&page, &known).await?;
@@ -194,7 +194,7 @@ fn the_inspector_reads_raw_packets_as_the_core_does() -> Result<()> {
 }
 
 #[test]
-fn a_field_lights_its_bytes_and_its_place_on_the_wave_and_the_wave_lights_the_byte() -> Result<()> {
+fn a_field_highlights_its_bytes_and_waveform_and_vice_versa() -> Result<()> {
     let known = preset("framed-link")?;
     in_browser(move |page| async move {
         open(&page, &known).await?;
@@ -228,7 +228,7 @@ fn a_field_lights_its_bytes_and_its_place_on_the_wave_and_the_wave_lights_the_by
 }
 
 #[test]
-fn bytes_are_copied_as_hex_and_selected_where_the_browser_refuses() -> Result<()> {
+fn bytes_are_copied_as_hex_or_selected_without_clipboard() -> Result<()> {
     let known = preset("framed-link")?;
     in_browser(move |page| async move {
         let clipboard = "globalThis.copied = []; globalThis.refuses = false;
@@ -258,7 +258,7 @@ fn bytes_are_copied_as_hex_and_selected_where_the_browser_refuses() -> Result<()
 }
 
 #[test]
-fn files_hold_all_rows_those_on_show_or_those_between_the_cursors() -> Result<()> {
+fn files_have_all_rows_visible_rows_or_rows_between_cursors() -> Result<()> {
     let known = preset("framed-noisy-line")?;
     in_sources(move |page| async move {
         open(&page, &known).await?;
@@ -300,7 +300,7 @@ fn files_hold_all_rows_those_on_show_or_those_between_the_cursors() -> Result<()
 }
 
 #[test]
-fn a_table_without_rows_says_why() -> Result<()> {
+fn an_empty_table_explains_why() -> Result<()> {
     let known = preset("sonobe-2011-segments")?;
     in_browser(move |page| async move {
         open(&page, &known).await?;
@@ -313,7 +313,7 @@ fn a_table_without_rows_says_why() -> Result<()> {
 }
 
 #[test]
-fn little_room_needs_no_scrolling_sideways() -> Result<()> {
+fn narrow_tables_need_no_horizontal_scrolling() -> Result<()> {
     let known = preset("framed-noisy-line")?;
     in_browser(move |page| async move {
         open(&page, &known).await?;
@@ -336,7 +336,7 @@ fn little_room_needs_no_scrolling_sideways() -> Result<()> {
 }
 
 #[test]
-fn a_fault_in_the_header_leads_to_the_row_that_raised_it_and_that_says_why() -> Result<()> {
+fn a_fault_in_the_header_leads_to_its_row_and_reason() -> Result<()> {
     let known = preset("patent-2019-addressed")?;
     let log = &known.recording.packets;
     let short = log.rows().iter().position(|row| row.outcome == RowOutcome::Short).context("one is cut")?;

@@ -84,7 +84,7 @@ async fn until_shown(page: &Session, machine: &StandAlone) -> Result<()> {
 }
 
 #[test]
-fn every_preset_with_a_panel_shows_what_the_core_says_at_any_cycle() -> Result<()> {
+fn every_panel_matches_the_core_in_any_cycle() -> Result<()> {
     in_browser(|page| async move {
         let mut shown = 0;
         for preset in CONTROLLER_PRESETS.iter().chain(CONTROLLER_PLANT_PRESETS) {
@@ -113,7 +113,7 @@ fn every_preset_with_a_panel_shows_what_the_core_says_at_any_cycle() -> Result<(
 }
 
 #[test]
-fn a_press_at_the_cursor_is_a_change_that_is_linked_and_undone() -> Result<()> {
+fn a_press_at_the_cursor_is_linked_and_can_be_undone() -> Result<()> {
     in_browser(|page| async move {
         let none = with_inputs("")?;
         open(&page, &none, 4_000_000).await?;
@@ -138,7 +138,7 @@ fn a_press_at_the_cursor_is_a_change_that_is_linked_and_undone() -> Result<()> {
 }
 
 #[test]
-fn what_is_to_be_done_next_is_told_and_where_a_move_never_comes_to_its_speed() -> Result<()> {
+fn the_panel_shows_the_next_action_and_unreached_speeds() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(
             r#"{"source":{"standalone":[{"groups":[{"move":{"length":100,"speed_hz":4000}}],"memory":{"initial":"blank"}}]}}"#,
@@ -178,7 +178,7 @@ fn the_power_is_cut_at_the_cursor_and_comes_back() -> Result<()> {
 }
 
 #[test]
-fn what_cannot_be_is_told_and_changes_nothing() -> Result<()> {
+fn an_impossible_input_is_reported_and_changes_nothing() -> Result<()> {
     in_browser(|page| async move {
         let jog = press("jog_plus", 4_000_000, 8_000_000);
         let known = with_inputs(&jog)?;
@@ -197,7 +197,7 @@ fn what_cannot_be_is_told_and_changes_nothing() -> Result<()> {
 }
 
 #[test]
-fn an_input_is_chosen_moved_and_removed_by_keys_and_by_its_field() -> Result<()> {
+fn an_input_is_selected_moved_and_removed_by_keys_and_field() -> Result<()> {
     in_browser(|page| async move {
         let jog = press("jog_plus", 4_000_000, 8_000_000);
         open(&page, &with_inputs(&jog)?, 0).await?;
@@ -224,7 +224,7 @@ fn an_input_is_chosen_moved_and_removed_by_keys_and_by_its_field() -> Result<()>
 }
 
 #[test]
-fn a_program_is_started_paused_and_cut_by_keys_alone() -> Result<()> {
+fn a_program_is_started_paused_and_cut_with_keys_only() -> Result<()> {
     in_browser(|page| async move {
         open(&page, &with_long_program("")?, 3_200_000).await?;
         page.press("[data-input='start']", &ENTER.to_string()).await?;
@@ -340,7 +340,7 @@ const INTERLEAVED: &str = r"
 ";
 
 #[test]
-fn requests_between_two_runs_are_neither_mixed_up_nor_late() -> Result<()> {
+fn requests_between_two_runs_are_in_order_and_punctual() -> Result<()> {
     in_browser(|page| async move {
         let [alone, motion] = [with_inputs(&press("jog_plus", 4_000_000, 8_000_000))?, Known::of("{}")?];
         page.open("").await?;

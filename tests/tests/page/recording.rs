@@ -161,7 +161,7 @@ pub(crate) async fn cancel(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Result<()> {
+fn a_recording_is_mapped_and_shown_next_to_the_model_until_undo() -> Result<()> {
     in_browser(|page| async move {
         let (own, text) = (Known::of(&with_distance(800.0))?, cosine());
         page.open("").await?;
@@ -248,7 +248,7 @@ fn a_recording_is_mapped_and_stands_beside_the_model_until_it_is_undone() -> Res
 }
 
 #[test]
-fn a_recording_is_aligned_by_the_step_that_is_chosen_and_by_none_that_one_of_both_lacks() -> Result<()> {
+fn a_recording_is_aligned_by_a_step_that_both_have() -> Result<()> {
     in_browser(|page| async move {
         let (own, text) = (Known::of(&with_distance(800.0))?, cosine());
         page.open("").await?;
@@ -292,7 +292,7 @@ fn a_recording_is_aligned_by_the_step_that_is_chosen_and_by_none_that_one_of_bot
 }
 
 #[test]
-fn the_recorded_pulses_are_judged_and_a_map_is_kept_for_the_next_file() -> Result<()> {
+fn recorded_pulses_are_checked_and_their_map_is_remembered() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let text = cosine();
@@ -358,7 +358,7 @@ fn the_recorded_pulses_are_judged_and_a_map_is_kept_for_the_next_file() -> Resul
 }
 
 #[test]
-fn what_a_file_does_not_tell_is_asked_and_what_is_wrong_with_it_is_said() -> Result<()> {
+fn missing_information_is_requested_and_errors_are_reported() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of("{}")?;
         page.open("").await?;
@@ -414,7 +414,7 @@ fn what_a_file_does_not_tell_is_asked_and_what_is_wrong_with_it_is_said() -> Res
 }
 
 #[test]
-fn bytes_and_positions_are_dropped_and_pasted_and_come_to_packets_and_steps() -> Result<()> {
+fn dropped_bytes_and_positions_become_packets_and_steps() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of("{}")?;
         page.open("").await?;
@@ -460,7 +460,7 @@ fn bytes_and_positions_are_dropped_and_pasted_and_come_to_packets_and_steps() ->
 }
 
 #[test]
-fn of_a_part_that_is_chosen_the_views_show_the_pulses_and_the_figures_are_of_all() -> Result<()> {
+fn a_selected_part_keeps_the_figures_of_the_whole_recording() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.ready().await?;
@@ -495,7 +495,7 @@ fn of_a_part_that_is_chosen_the_views_show_the_pulses_and_the_figures_are_of_all
 }
 
 #[test]
-fn the_packets_of_both_lines_are_listed_with_the_replies_that_were_recorded() -> Result<()> {
+fn packets_of_both_lines_are_listed_with_recorded_replies() -> Result<()> {
     in_browser(|page| async move {
         let framed = Known::of(r#"{"line":{"protocol":"framed"}}"#)?;
         page.open("").await?;
@@ -528,7 +528,7 @@ fn the_packets_of_both_lines_are_listed_with_the_replies_that_were_recorded() ->
 }
 
 #[test]
-fn the_dialog_is_used_by_keys_alone_fits_a_narrow_screen_and_axe_finds_nothing_in_it() -> Result<()> {
+fn the_dialog_works_with_keys_and_on_narrow_screens() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of("{}")?;
         page.open("").await?;

@@ -121,7 +121,7 @@ async fn compare(page: &Session, case: &Case) -> Result<()> {
 }
 
 #[test]
-fn recordings_of_all_kinds_have_the_map_and_the_figures_of_the_core() -> Result<()> {
+fn recordings_of_all_kinds_match_the_core() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.ready().await?;

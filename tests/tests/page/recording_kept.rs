@@ -74,7 +74,7 @@ async fn database(page: &Session, work: &str) -> Result<()> {
 }
 
 #[test]
-fn a_recording_is_there_after_a_reload_with_a_link_and_without() -> Result<()> {
+fn a_recording_survives_a_reload_with_and_without_a_link() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of(&with_distance(800.0))?;
         page.open("").await?;
@@ -100,7 +100,7 @@ fn a_recording_is_there_after_a_reload_with_a_link_and_without() -> Result<()> {
 }
 
 #[test]
-fn an_edited_experiment_keeps_its_recording_over_reloads_and_in_a_new_tab() -> Result<()> {
+fn a_recording_survives_edits_reloads_and_a_new_tab() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.js::<bool>("history.replaceState = () => {}; return true;", Vec::new()).await?;
@@ -130,7 +130,7 @@ fn an_edited_experiment_keeps_its_recording_over_reloads_and_in_a_new_tab() -> R
 }
 
 #[test]
-fn what_storage_lost_damaged_or_refused_is_said_once_and_the_model_is_shown() -> Result<()> {
+fn storage_failures_are_reported_once_and_show_the_model() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let text = wandering(100).replacen(",0,1\n0.0", ",0,1\n0.009000000,1,1\n0.009500000,0,1\n0.0", 1);

@@ -47,7 +47,7 @@ async fn show_part(page: &Session, name: &str, text: &str) -> Result<()> {
 }
 
 #[test]
-fn the_file_of_a_part_is_given_up_once_something_else_is_on_show() -> Result<()> {
+fn the_file_of_a_part_is_released_when_no_longer_shown() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of(&with_distance(800.0))?;
         page.open("").await?;
@@ -93,7 +93,7 @@ fn the_file_of_a_part_is_given_up_once_something_else_is_on_show() -> Result<()>
 }
 
 #[test]
-fn all_of_a_recording_is_asked_for_once_for_each_width_and_what_fails_is_said_in_its_place() -> Result<()> {
+fn the_overview_is_requested_once_per_width() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.ready().await?;
@@ -150,7 +150,7 @@ fn all_of_a_recording_is_asked_for_once_for_each_width_and_what_fails_is_said_in
 }
 
 #[test]
-fn a_run_waits_for_the_pieces_of_its_recording_and_a_newer_one_does_not() -> Result<()> {
+fn a_run_waits_for_its_recording_and_a_newer_run_does_not() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of(&with_distance(800.0))?;
         page.open("").await?;

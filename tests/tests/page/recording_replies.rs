@@ -44,7 +44,7 @@ async fn rows(page: &Session, count: usize) -> Result<()> {
 }
 
 #[test]
-fn of_a_silent_device_the_table_has_no_replies_and_of_one_that_was_not_recorded_the_models() -> Result<()> {
+fn unrecorded_replies_are_those_of_the_model() -> Result<()> {
     in_browser(|page| async move {
         let framed = Known::of(FRAMED)?;
         page.open(&format!("#{}", framed.link)).await?;
@@ -71,7 +71,7 @@ fn of_a_silent_device_the_table_has_no_replies_and_of_one_that_was_not_recorded_
 }
 
 #[test]
-fn a_recording_of_replies_alone_is_one_also_after_a_reload() -> Result<()> {
+fn a_recording_of_replies_only_survives_a_reload() -> Result<()> {
     in_browser(|page| async move {
         let framed = Known::of(FRAMED)?;
         page.open(&format!("#{}", framed.link)).await?;
@@ -113,7 +113,7 @@ fn at_the_line(traces: [&[Record]; 2]) -> Vec<Record> {
 }
 
 #[test]
-fn each_controllers_table_has_its_own_recorded_replies_and_none_of_the_model() -> Result<()> {
+fn each_controllers_table_has_only_its_recorded_replies() -> Result<()> {
     in_browser(|page| async move {
         let experiment = Experiment::from_json(TWO).ok().context("no problems")?;
         let mut recordings = [StoredRun::default(), StoredRun::default()];

@@ -53,7 +53,7 @@ async fn show(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn a_recordings_acceleration_is_read_at_the_cursors_and_between_them_and_said_what_it_is() -> Result<()> {
+fn a_recordings_acceleration_is_read_at_both_cursors() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.ready().await?;
@@ -132,7 +132,7 @@ fn with_late_replies(trace: &[Record], clock_hz: u32) -> String {
 }
 
 #[test]
-fn recorded_replies_stand_in_the_table_of_packets_with_their_turnaround_also_after_a_reload() -> Result<()> {
+fn recorded_replies_and_turnarounds_survive_a_reload() -> Result<()> {
     in_browser(|page| async move {
         let framed = Known::of(r#"{"line":{"protocol":"framed"}}"#)?;
         page.open(&format!("#{}", framed.link)).await?;
@@ -184,7 +184,7 @@ fn recorded_replies_stand_in_the_table_of_packets_with_their_turnaround_also_aft
 }
 
 #[test]
-fn the_header_says_as_long_as_a_recording_is_on_show_and_a_phone_is_told_little() -> Result<()> {
+fn the_header_labels_a_recording_and_is_short_on_phones() -> Result<()> {
     in_browser(|page| async move {
         let own = Known::of(&with_distance(800.0))?;
         page.open("").await?;
@@ -221,7 +221,7 @@ fn the_header_says_as_long_as_a_recording_is_on_show_and_a_phone_is_told_little(
 }
 
 #[test]
-fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
+fn a_part_is_selected_by_dragging_on_the_overview() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.ready().await?;
@@ -300,7 +300,7 @@ fn a_part_is_picked_by_dragging_over_all_of_the_recording() -> Result<()> {
 }
 
 #[test]
-fn the_records_of_a_long_recording_go_to_the_engine_in_pieces() -> Result<()> {
+fn records_of_a_long_recording_are_sent_in_pieces() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.ready().await?;

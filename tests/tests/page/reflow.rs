@@ -193,7 +193,7 @@ const SPOIL: &str = "
     return null;";
 
 #[test]
-fn each_rule_finds_what_it_is_about() -> Result<()> {
+fn each_rule_finds_its_violation() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.js::<()>(SPOIL, vec![]).await?;
@@ -212,7 +212,7 @@ fn each_rule_finds_what_it_is_about() -> Result<()> {
 }
 
 #[test]
-fn on_any_screen_nothing_is_cut_off_and_every_target_is_large_enough() -> Result<()> {
+fn nothing_is_cut_off_and_targets_are_large_on_any_screen() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();
         let sizes = [(1440, 900), (1024, 768), (320, 640)].map(|size| window(size, 1));
@@ -232,7 +232,7 @@ fn at_twice_the_zoom_nothing_is_cut_off() -> Result<()> {
 }
 
 #[test]
-fn with_letters_of_twice_the_size_nothing_is_cut_off() -> Result<()> {
+fn with_text_of_twice_the_size_nothing_is_cut_off() -> Result<()> {
     in_browser(|page| async move {
         let mut wrong = Vec::new();
         page.before_scripts(
@@ -247,7 +247,7 @@ fn with_letters_of_twice_the_size_nothing_is_cut_off() -> Result<()> {
 }
 
 #[test]
-fn forced_colours_leave_every_control_and_every_curve_to_be_seen() -> Result<()> {
+fn forced_colors_keep_every_control_and_curve_visible() -> Result<()> {
     in_browser(|page| async move {
         let features = json!({ "features": [{ "name": "forced-colors", "value": "active" }] });
         page.devtools("Emulation.setEmulatedMedia", features).await?;

@@ -53,7 +53,7 @@ async fn until_reads(page: &Session, what: &str) -> Result<()> {
 }
 
 #[test]
-fn rows_are_named_ordered_and_hidden_in_their_panel_and_stay_so() -> Result<()> {
+fn rows_are_named_ordered_and_hidden_permanently() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         until_rows(&page, 6).await?;
@@ -99,7 +99,7 @@ fn rows_are_named_ordered_and_hidden_in_their_panel_and_stay_so() -> Result<()> 
 }
 
 #[test]
-fn the_height_of_the_rows_is_chosen_by_a_slider_and_by_keys() -> Result<()> {
+fn the_height_of_rows_is_set_by_a_slider_and_by_keys() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         until_rows(&page, 6).await?;
@@ -127,7 +127,7 @@ fn the_height_of_the_rows_is_chosen_by_a_slider_and_by_keys() -> Result<()> {
 }
 
 #[test]
-fn the_chosen_row_is_moved_and_hidden_by_keys_and_said() -> Result<()> {
+fn the_selected_row_is_moved_and_hidden_by_keys_and_announced() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         until_rows(&page, 6).await?;

@@ -29,7 +29,7 @@ async fn no_sideways_scrolling(page: &Session, what: &str) -> Result<()> {
 }
 
 #[test]
-fn on_a_narrow_screen_tabs_switch_the_views_and_nothing_scrolls_sideways() -> Result<()> {
+fn narrow_screens_have_tabs_and_no_horizontal_scrolling() -> Result<()> {
     in_browser(|page| async move {
         for (width, height) in [(390, 844), (320, 640)] {
             page.screen(width, height).await?;
@@ -81,7 +81,7 @@ async fn drawn(page: &Session, canvas: &str, ink: &str) -> Result<()> {
 }
 
 #[test]
-fn on_a_narrow_screen_a_packet_is_shown_in_the_pulses() -> Result<()> {
+fn a_packet_can_be_shown_in_the_pulses_on_a_narrow_screen() -> Result<()> {
     in_browser(|page| async move {
         page.screen(390, 844).await?;
         page.open("").await?;
@@ -153,7 +153,7 @@ fn both_themes_follow_the_system_and_keep_the_contrast_of_every_curve() -> Resul
 }
 
 #[test]
-fn the_chosen_theme_wins_over_the_system_and_is_kept() -> Result<()> {
+fn the_selected_theme_overrides_the_system_and_is_saved() -> Result<()> {
     in_browser(|page| async move {
         page.system_colours("light").await?;
         page.open("").await?;

@@ -42,7 +42,7 @@ async fn open(page: &Session, preset: &str) -> Result<()> {
 }
 
 #[test]
-fn on_a_small_laptop_curves_rows_and_bytes_have_room() -> Result<()> {
+fn curves_rows_and_bytes_fit_on_a_small_laptop() -> Result<()> {
     in_browser(|page| async move {
         for (width, height) in [(1366, 768), (1024, 768)] {
             page.screen(width, height).await?;
@@ -88,7 +88,7 @@ fn on_a_phone_a_view_begins_near_the_top_and_shows_the_bytes() -> Result<()> {
 }
 
 #[test]
-fn a_view_with_nothing_to_show_gives_its_room_away_until_it_is_unfolded() -> Result<()> {
+fn an_empty_view_is_collapsed_until_it_is_expanded() -> Result<()> {
     in_browser(|page| async move {
         page.screen(1366, 768).await?;
         open(&page, "song-2021-one-turn").await?;

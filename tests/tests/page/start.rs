@@ -28,7 +28,7 @@ async fn press_card(page: &Session, within: &str, title: &str) -> Result<()> {
 }
 
 #[test]
-fn a_new_visitor_has_three_cards_that_lead_to_their_places() -> Result<()> {
+fn new_visitors_see_three_working_cards() -> Result<()> {
     in_browser(|page| async move {
         for (width, height) in [(1366, 768), (390, 844)] {
             for (title, focus, view) in [
@@ -66,7 +66,7 @@ fn a_new_visitor_has_three_cards_that_lead_to_their_places() -> Result<()> {
 }
 
 #[test]
-fn a_link_or_own_work_shows_no_cards() -> Result<()> {
+fn links_and_saved_work_show_no_cards() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::preset(preset("song-2021-plateau")?)?;
         page.open(&format!("#{}", known.link)).await?;
@@ -83,7 +83,7 @@ fn a_link_or_own_work_shows_no_cards() -> Result<()> {
 }
 
 #[test]
-fn the_gallery_is_searched_and_left_by_keys() -> Result<()> {
+fn the_gallery_is_searched_and_closed_by_keys() -> Result<()> {
     const FOUND: &str =
         "[...document.querySelectorAll('#gallery [data-entry]')].map((card) => card.dataset.entry)";
     in_browser(|page| async move {

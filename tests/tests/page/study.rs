@@ -123,7 +123,7 @@ fn the_study_opens_and_closes_by_button_key_and_link() -> Result<()> {
 }
 
 #[test]
-fn the_sweep_is_the_cores_and_a_d1_is_taken_and_given_back() -> Result<()> {
+fn the_sweep_matches_the_core_and_a_d1_can_be_applied_and_undone() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(SINE)?;
         page.open(&format!("#{}&v=tstudy.ysine", known.link)).await?;
@@ -189,7 +189,7 @@ async fn shown(page: &Session) -> Result<Scenario> {
 }
 
 #[test]
-fn the_best_vertices_are_taken_as_points_that_have_their_distortion() -> Result<()> {
+fn the_best_vertices_become_points_with_their_distortion() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&SINE.replace("\"steps\":800", "\"steps\":2000"))?;
         page.open(&format!("#{}&v=tstudy.ysine", known.link)).await?;
@@ -233,7 +233,7 @@ fn the_best_vertices_are_taken_as_points_that_have_their_distortion() -> Result<
 }
 
 #[test]
-fn without_a_sine_the_axis_is_offered_one() -> Result<()> {
+fn an_axis_without_a_sine_is_offered_one() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.click("#study").await?;
@@ -261,7 +261,7 @@ fn without_a_sine_the_axis_is_offered_one() -> Result<()> {
 }
 
 #[test]
-fn a_long_sweep_says_how_far_it_is_and_is_left_off() -> Result<()> {
+fn a_long_sweep_shows_its_progress_and_can_be_canceled() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.click("#study").await?;
@@ -351,7 +351,7 @@ async fn same_file(page: &Session, language: &str, name: &str, expected: &str) -
 }
 
 #[test]
-fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
+fn numbers_and_files_of_tables_match_the_core() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(SINE)?;
         page.before_scripts(KEEP).await?;
@@ -420,7 +420,7 @@ fn the_tables_numbers_and_files_are_the_cores() -> Result<()> {
 const MOVE: &str = "source.motion.axes[0].moves[0]";
 
 #[test]
-fn the_comparison_is_the_cores_and_a_shape_is_taken_and_given_back() -> Result<()> {
+fn the_comparison_matches_the_core_and_a_shape_can_be_applied() -> Result<()> {
     in_browser(|page| async move {
         let given = r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.1}}],"motor":{}}]}}}"#;
         let known = Known::of(given)?;
@@ -521,7 +521,7 @@ const ROWS: &str = "document.querySelectorAll('#study-compare tbody tr').length"
 const USABLE: &str = "document.querySelectorAll('#study-compare tbody button:enabled').length";
 
 #[test]
-fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
+fn a_shape_is_applied_only_to_the_selected_axis() -> Result<()> {
     in_browser(|page| async move {
         let one = r#"{"moves":[{"cosine":{"distance":{"steps":6400},"duration_s":0.4,"ramp_s":0.1}}]}"#;
         let known = Known::of(&format!(
@@ -570,7 +570,7 @@ fn a_shape_goes_into_the_axis_that_is_looked_at_or_nowhere() -> Result<()> {
 }
 
 #[test]
-fn the_focus_stays_in_the_tab_where_a_button_goes() -> Result<()> {
+fn the_focus_stays_in_the_tab_when_a_button_disappears() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.click("#study").await?;

@@ -64,7 +64,7 @@ async fn chosen(page: &Session) -> Result<Vec<usize>> {
 }
 
 #[test]
-fn a_chosen_packet_is_shown_in_the_pulses_and_in_the_curves() -> Result<()> {
+fn a_selected_packet_is_shown_in_pulses_and_curves() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of("{}")?;
         let packets = known.recording.packets.rows();
@@ -119,7 +119,7 @@ impl Place {
 }
 
 #[test]
-fn wheel_keys_buttons_and_fields_change_the_shown_time_and_fit_restores_it() -> Result<()> {
+fn every_zoom_control_changes_the_range_and_fit_restores_it() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let whole = window(&page).await?;
@@ -168,7 +168,7 @@ async fn changed(page: &Session, before: Window) -> Result<Window> {
 }
 
 #[test]
-fn a_click_sets_a_cursor_in_all_views_and_two_cursors_tell_their_difference() -> Result<()> {
+fn clicks_set_cursors_in_all_views_with_their_difference() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let place = Place::of(&page, "charts").await?;
@@ -198,7 +198,7 @@ fn a_click_sets_a_cursor_in_all_views_and_two_cursors_tell_their_difference() ->
 }
 
 #[test]
-fn the_next_edge_is_the_traces_and_is_spoken() -> Result<()> {
+fn the_next_edge_matches_the_trace_and_is_announced() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of("{}")?;
         // Bit 0 is STEP0, the row that is chosen first.

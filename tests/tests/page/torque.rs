@@ -35,7 +35,7 @@ fn first_axis(json: &str) -> Axis {
 }
 
 #[test]
-fn a_move_without_torque_enough_is_warned_of_and_more_torque_takes_the_warning_away() -> Result<()> {
+fn sufficient_torque_removes_the_warning() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(SHORT)?;
         page.open(&format!("#{}", known.link)).await?;
@@ -59,7 +59,7 @@ fn a_move_without_torque_enough_is_warned_of_and_more_torque_takes_the_warning_a
 }
 
 #[test]
-fn the_tab_torque_has_the_cores_numbers_and_its_curves() -> Result<()> {
+fn the_torque_tab_has_the_numbers_and_curves_of_the_core() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(SHORT)?;
         page.open(&format!("#{}&v=tstudy.ytorque", known.link)).await?;
@@ -104,7 +104,7 @@ const LIST: &str = r#"{"title":"At once","bus":{"channels":2},"source":{"segment
     {"steps":{"count":4000,"interval_q16":20971520,"dir":1}}]}]}}}"#;
 
 #[test]
-fn steps_without_a_motion_are_held_against_a_motor_that_is_chosen_or_the_plants() -> Result<()> {
+fn steps_without_a_motion_are_checked_against_a_motor() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(LIST)?;
         page.open(&format!("#{}&v=tstudy.ytorque", known.link)).await?;

@@ -154,7 +154,7 @@ impl Neg for Fixed {
 }
 
 #[test]
-fn functions_have_320_bits() {
+fn functions_are_exact_to_320_bits() {
     let digits = |x: &Fixed| {
         let ten = BigInt::from(10).pow(60);
         ((&x.0 * ten) >> BITS).to_string()

@@ -37,7 +37,7 @@ fn rises(outcome: &Outcome) -> Vec<u64> {
 }
 
 #[test]
-fn checks_and_digests_are_those_of_their_specifications() {
+fn crcs_and_digests_match_their_specifications() {
     assert_eq!(crc32c(b"123456789"), 0xE306_9283);
     assert_eq!(xxh64(b""), 0xEF46_DB37_51D8_E999);
     assert_eq!(
@@ -47,7 +47,7 @@ fn checks_and_digests_are_those_of_their_specifications() {
 }
 
 #[test]
-fn lengths_become_steps_and_steps_become_lengths() {
+fn lengths_and_steps_convert_both_ways() {
     // (digits, N, d, steps)
     let rows = [(305, 565, 1, 17233), (-305, 565, 1, -17232), (1, 1, 1, 0), (5, 1, 1, 1), (0, 7, 3, 0)];
     for (digits, n, d, steps) in rows {
@@ -58,7 +58,7 @@ fn lengths_become_steps_and_steps_become_lengths() {
 }
 
 #[test]
-fn the_table_has_the_documents_rows() {
+fn the_acceleration_table_has_the_published_rows() {
     let table = Table::new(1000, 1000, 20_000);
     // The first 30 steps at f_1; Part E's row (1) is the second.
     for (step, rate) in [(1, 1000), (30, 1000), (31, 1030), (61, 1058), (91, 1086), (198_901, 19_970)] {
@@ -70,7 +70,7 @@ fn the_table_has_the_documents_rows() {
 }
 
 #[test]
-fn a_fine_jog_of_10_hz_held_half_a_second_is_five_steps() {
+fn a_fine_jog_of_half_a_second_at_10_hz_is_five_steps() {
     let mut inputs = presses(&[(4_000_000, Input::Debug)], 400_000);
     inputs.extend(held(Input::JogPlus, 8_000_000, 16_000_000));
     let outcome = run(&alone(Controller { inputs, ..Controller::default() }));
@@ -118,7 +118,7 @@ fn a_controller_without_inputs_ends_when_its_record_is_written() {
 }
 
 #[test]
-fn a_hold_up_of_17_bytes_less_a_cycle_closes_for_sure() {
+fn a_hold_up_time_of_17_bytes_minus_one_cycle_is_sufficient() {
     let w = 10;
     // The cut comes in each cycle of the bytes of a save of numbers.
     let lost = |hold_up_cycles: u64| {
@@ -172,7 +172,7 @@ fn eight_slots_of_100_000_writes_last_400_000_power_cycles() {
 }
 
 #[test]
-fn problems_have_the_texts_paths() {
+fn problems_have_their_documented_paths() {
     let groups = vec![
         Group::Home,
         Group::Jump { to: 9, input: None, level: true },
@@ -203,7 +203,7 @@ fn problems_have_the_texts_paths() {
 }
 
 #[test]
-fn groups_that_repeat_without_end_are_too_much_work() {
+fn endlessly_repeated_groups_are_rejected_as_too_much_work() {
     let inputs = held(Input::Start, 400, 401).to_vec();
     let groups = vec![Group::Set { output: 1, level: true }, Group::Jump { to: 1, input: None, level: true }];
     let memory = Memory { byte_write_cycles: 1, ..Memory::default() };

@@ -14,7 +14,7 @@ fn faults(bytes: &[u8]) -> u16 {
 }
 
 #[test]
-fn the_check_is_crc_32_iscsi() {
+fn the_crc_is_crc_32_iscsi() {
     // The catalogue's check value, and RFC 3720's examples.
     assert_eq!(crc32c(b"123456789"), 0xE306_9283);
     assert_eq!(crc32c(&[0x00; 32]), 0x8A91_36AA);
@@ -29,7 +29,7 @@ fn to(first: u8, last: u8) -> Vec<u8> {
 }
 
 #[test]
-fn cobs_encodes_as_its_paper_does() {
+fn cobs_matches_the_examples_of_its_paper() {
     let packet = [0x45, 0x00, 0x00, 0x2C, 0x4C, 0x79, 0x00, 0x00, 0x40, 0x06, 0x4F, 0x37];
     let encoded = [0x02, 0x45, 0x01, 0x04, 0x2C, 0x4C, 0x79, 0x01, 0x05, 0x40, 0x06, 0x4F, 0x37];
     assert_eq!(cobs(&packet), encoded);
@@ -54,7 +54,7 @@ fn cobs_encodes_as_its_paper_does() {
 }
 
 #[test]
-fn a_frame_is_cobs_of_address_kind_body_and_check_little_endian_then_a_zero() {
+fn a_frame_is_cobs_of_its_fields_and_crc_and_a_zero() {
     // The checks were worked out apart, bit by bit from the other end.
     assert_eq!(frame(5, 4, &[]), [7, 5, 4, 0x66, 0x19, 0xD3, 0x6B, 0]);
     assert_eq!(frame(0, 4, &[]), [1, 6, 4, 0xCD, 0xE0, 0xFB, 0x36, 0]);
@@ -62,7 +62,7 @@ fn a_frame_is_cobs_of_address_kind_body_and_check_little_endian_then_a_zero() {
 }
 
 #[test]
-fn what_a_frame_says_comes_out_of_its_bytes_again() {
+fn encoding_and_decoding_frames_are_inverses() {
     for length in (0..=594).chain([600, 700]) {
         for body in [vec![0; length], vec![7; length], (0..length).map(|i| (i % 251) as u8).collect()] {
             let mut frames = Frames::default();
@@ -80,7 +80,7 @@ fn what_a_frame_says_comes_out_of_its_bytes_again() {
 }
 
 #[test]
-fn what_is_not_a_frame_sets_the_fault_that_the_text_names() {
+fn invalid_frames_set_their_documented_fault() {
     let status = frame(5, 4, &[]);
     let flipped = |byte: usize| {
         let mut bytes = status.clone();
@@ -127,7 +127,7 @@ fn what_is_not_a_frame_sets_the_fault_that_the_text_names() {
 }
 
 #[test]
-fn the_601st_decoded_byte_is_overlong_in_its_own_cycle() {
+fn the_601st_decoded_byte_is_overlong_in_its_cycle() {
     // 254 + 254 + 92 = 600 bytes, or 93 for 601.
     let blocks =
         |last: usize| [vec![255], vec![9; 254], vec![255], vec![9; 254], vec![last as u8 + 1], vec![9; last]];

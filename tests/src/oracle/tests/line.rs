@@ -108,7 +108,7 @@ fn the_stop_bit_is_sampled_in_one_cycle_only() {
 }
 
 #[test]
-fn the_start_bit_is_looked_at_again_in_its_middle() {
+fn the_start_bit_is_sampled_again_in_its_middle() {
     // "It looks again at t + floor(B/2): if the line is high it was a glitch": t = 10, looked at again in
     // cycle 15.
     for (glitch, expected) in [(14, 1), (15, 0), (16, 1)] {
@@ -173,7 +173,7 @@ fn after_a_framing_error_the_receiver_arms_one_cycle_after_the_line_is_high() {
 }
 
 #[test]
-fn a_slow_receiver_takes_the_stop_bit_for_a_data_bit() {
+fn a_slow_receiver_reads_the_stop_bit_as_a_data_bit() {
     // The sender's bit is 16, B = 18: data bits sampled at t + 9 + 18*(i+1) = 27 45 63 81 99 117 135 153,
     // the stop bit at 171. The sender's data bit i is [16*(i+1), 16*(i+2)); bit 7 = [128, 144): receiver
     // bits 0..=7 see 0 1 2 4 5 6 7 stop.
@@ -188,7 +188,7 @@ fn a_slow_receiver_takes_the_stop_bit_for_a_data_bit() {
 }
 
 #[test]
-fn forced_levels_override_what_is_sent_and_the_later_entry_wins() {
+fn forced_levels_override_sent_bytes_and_the_later_entry_wins() {
     let rx = |entries: &[ForcedLevel]| edges(&run(&base(), &forced(entries, 60)), bits::RX);
     assert_eq!(rx(&[(10, 3, false)]), [(10, false), (13, true)]);
     assert_eq!(rx(&[(10, 10, false), (12, 3, true)]), [(10, false), (12, true), (15, false), (20, true)]);

@@ -79,7 +79,7 @@ fn a_reply_is_address_kind_status_and_check() {
 }
 
 #[test]
-fn a_frame_for_another_address_changes_nothing_and_one_for_255_is_never_answered() {
+fn other_addresses_are_ignored_and_255_gets_no_reply() {
     let idle = status(Ready, 3, 0, 0, 0);
     check(
         &slow(),
@@ -107,14 +107,14 @@ fn a_frame_for_another_address_changes_nothing_and_one_for_255_is_never_answered
 }
 
 #[test]
-fn without_an_address_of_its_own_a_controller_is_0() {
+fn the_default_address_is_0() {
     let config = Config { address: None, ..slow() };
     let reply = frame(0, STATUS | 0x80, &status(Ready, 3, 0, 0, 0));
     check(&config, &[(frame(0, STATUS, &[]), Some(reply)), (order(STATUS), None)]);
 }
 
 #[test]
-fn what_is_not_accepted_is_not_answered() {
+fn invalid_frames_get_no_reply() {
     let mut damaged = order(STATUS);
     damaged[3] ^= 1;
     let seen = status(Ready, 3, 0, CRC | SHORT_PACKET, 0);
@@ -122,7 +122,7 @@ fn what_is_not_accepted_is_not_answered() {
 }
 
 #[test]
-fn a_bad_body_is_judged_first_and_sets_no_fault() {
+fn an_invalid_body_is_refused_first_and_sets_no_fault() {
     let idle = status(Ready, 40, 0, 0, 0);
     let bad = |body: &[u8]| (frame(5, TICKS, body), nak(6, &idle));
     check(
@@ -167,7 +167,7 @@ fn up_to_32_ticks_are_queued_all_or_none() {
 }
 
 #[test]
-fn a_repeat_is_answered_as_done_and_not_queued_again() {
+fn a_repeat_is_acknowledged_and_not_queued_again() {
     let moving = status(Moving, 3, 1, 0, 0);
     check(
         &slow(),
@@ -230,7 +230,7 @@ fn the_seq_wraps_after_255_and_a_repeat_does_too() {
 }
 
 #[test]
-fn stopped_comes_before_boot_boot_before_too_many_and_too_many_before_a_full_queue() {
+fn refusals_have_their_order_of_precedence() {
     let stopped = status(Stopped, 3, 0, 0, 0);
     check(
         &Config { boot: 1_000_000, ..slow() },
@@ -254,7 +254,7 @@ fn stopped_comes_before_boot_boot_before_too_many_and_too_many_before_a_full_que
 }
 
 #[test]
-fn boot_ends_with_its_last_cycle_also_for_orders() {
+fn boot_ends_with_its_last_cycle_for_frames_too() {
     // TICKS of one tick is 11 bytes: p = 1 + 10*160 + 152 = 1753.
     for (boot, reply) in
         [(1_753, ack(TICKS, &status(Moving, 2, 1, 0, 0))), (1_754, nak(4, &status(Busy, 3, 0, 0, 0)))]
@@ -264,7 +264,7 @@ fn boot_ends_with_its_last_cycle_also_for_orders() {
 }
 
 #[test]
-fn during_boot_all_kinds_but_ticks_work() {
+fn all_kinds_but_ticks_work_during_boot() {
     let busy = status(Busy, 3, 0, 0, 0);
     let stopped = status(Stopped, 3, 0, 0, 0);
     check(
@@ -284,7 +284,7 @@ fn during_boot_all_kinds_but_ticks_work() {
 }
 
 #[test]
-fn positions_are_told_a_channel_after_the_other_little_endian_after_the_status() {
+fn positions_are_little_endian_per_channel_after_the_status() {
     // 300 ticks of four steps to the left on channel 1, then one with three to the right on channel 0 and one on channel 2.
     let config = Config { channels: 3, ..framed() };
     let ticks = |seq: u8, count: u8, orders: [u8; 3]| {
@@ -309,7 +309,7 @@ fn positions_are_told_a_channel_after_the_other_little_endian_after_the_status()
 }
 
 #[test]
-fn a_body_where_none_belongs_is_bad_and_what_is_no_kind_is_unknown_with_or_without_one() {
+fn unexpected_bodies_and_unknown_kinds_are_refused() {
     let idle = status(Ready, 3, 0, 0, 0);
     for kind in [ENABLE, DISABLE, STATUS, STOP, RESYNC, POSITIONS] {
         check(&slow(), &[(frame(5, kind, &[0]), nak(6, &idle)), (order(STATUS), ack(STATUS, &idle))]);
@@ -348,7 +348,7 @@ fn stop_keeps_seq_faults_and_ticks_done() {
 }
 
 #[test]
-fn a_run_ends_with_the_seq_the_state_and_the_free_places_that_a_status_would_show() {
+fn a_run_ends_with_the_seq_state_and_free_places_of_a_status() {
     let end = |config: &Config, frames: &[Vec<u8>]| {
         let run = run(config, &conversation(frames));
         (run.state, run.free, run.expected_seq)

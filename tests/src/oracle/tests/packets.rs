@@ -58,7 +58,7 @@ fn packets_for_another_address_are_consumed_by_length_and_255_is_for_all() {
 }
 
 #[test]
-fn a_delivery_45_bits_after_the_last_continues_the_packet_and_one_cycle_later_begins_another() {
+fn a_byte_after_more_than_45_bits_begins_another_packet() {
     // "A delivery at d + 45*B still continues the packet": d = 153, so 873 (sent at 721) does and 874 does
     // not.
     let two = Config { channels: 2, ..base() };
@@ -73,7 +73,7 @@ fn a_delivery_45_bits_after_the_last_continues_the_packet_and_one_cycle_later_be
 }
 
 #[test]
-fn the_gap_is_noticed_45_bits_and_one_cycle_after_the_delivery() {
+fn a_gap_is_detected_45_bits_and_one_cycle_after_a_byte() {
     // d = 153: SHORT_PACKET in cycle 153 + 720 + 1 = 874, so a run of 875 cycles has it and one of 874 has
     // not.
     let two = Config { channels: 2, ..base() };
@@ -82,7 +82,7 @@ fn the_gap_is_noticed_45_bits_and_one_cycle_after_the_delivery() {
 }
 
 #[test]
-fn a_gap_with_nothing_partial_is_no_fault() {
+fn a_gap_without_a_partial_packet_is_no_fault() {
     assert_eq!(
         outcome(&base(), &sent(&[(1, &[STEP_RIGHT]), (2_000, &[STEP_RIGHT])], 4_000)),
         (vec![155, 2_154], 0)
@@ -90,7 +90,7 @@ fn a_gap_with_nothing_partial_is_no_fault() {
 }
 
 #[test]
-fn a_short_packet_is_a_fault_whatever_address_it_began_with() {
+fn a_short_packet_is_a_fault_for_any_address() {
     for address in [5, 6, 255] {
         let input = sent(&[(1, &[address]), (722, &[5, STEP_RIGHT])], 2_000);
         // 5 is delivered at 874, the order at 1034.
@@ -99,7 +99,7 @@ fn a_short_packet_is_a_fault_whatever_address_it_began_with() {
 }
 
 #[test]
-fn a_byte_in_progress_or_a_line_held_low_does_not_hold_the_gap_off() {
+fn a_byte_in_progress_or_a_low_line_does_not_delay_the_gap() {
     let two = Config { channels: 2, ..base() };
     // The second byte starts 1 cycle before the gap ends (874) and is delivered at 1025.
     let input = sent(&[(1, &[STEP_RIGHT]), (873, &[0x82, 0])], 2_000);
@@ -110,7 +110,7 @@ fn a_byte_in_progress_or_a_line_held_low_does_not_hold_the_gap_off() {
 }
 
 #[test]
-fn a_framing_error_drops_the_partial_packet_and_ignores_until_a_gap() {
+fn after_a_framing_error_bytes_are_ignored_until_a_gap() {
     let two = Config { channels: 2, ..base() };
     // Bytes at 1 and 161; the second's stop bit (sampled at 313) is broken. Ignoring ends at 313 + 721 =
     // 1034.
@@ -136,7 +136,7 @@ fn a_framing_error_drops_the_partial_packet_and_ignores_until_a_gap() {
 }
 
 #[test]
-fn a_framing_error_in_the_cycle_in_which_the_gap_ends_finds_the_packet_short() {
+fn a_framing_error_in_the_cycle_of_the_gap_ends_a_short_packet() {
     // d = 153; the gap ends in 874; a byte sent at 722 has its stop sample there. One cycle earlier it is
     // in the packet.
     let two = Config { channels: 2, ..base() };
@@ -150,7 +150,7 @@ fn a_framing_error_in_the_cycle_in_which_the_gap_ends_finds_the_packet_short() {
 }
 
 #[test]
-fn too_many_steps_drops_the_packet_whole_and_sets_no_other_fault() {
+fn too_many_steps_drops_the_packet_and_sets_no_other_fault() {
     let two = Config { channels: 2, ..base() };
     assert_eq!(outcome(&two, &sent(&[(1, &[0x84, 0x04])], 1_000)).1, 0);
     assert_eq!(outcome(&two, &sent(&[(1, &[0x84, 0x05])], 1_000)), (vec![], TOO_MANY_STEPS));
@@ -165,7 +165,7 @@ fn too_many_steps_drops_the_packet_whole_and_sets_no_other_fault() {
 }
 
 #[test]
-fn a_packet_that_finds_the_queue_full_is_dropped_whole() {
+fn a_packet_for_a_full_queue_is_dropped_completely() {
     // Ticks of 4*200 = 800 cycles. Committed at 153: c0 = 154, e = 954. At 313 the place is taken, at 473
     // there is none.
     let config = Config { step_period: 200, queue_depth: 1, ..base() };
@@ -188,7 +188,7 @@ fn a_place_freed_at_c0_equal_p_is_free_at_p() {
 }
 
 #[test]
-fn a_packet_before_boot_is_over_is_dropped_without_a_fault() {
+fn a_packet_during_boot_is_dropped_without_a_fault() {
     // p = 153; "the cycles 0..=boot-1 are self-test".
     let boot = |boot| Config { boot, ..base() };
     assert_eq!(outcome(&boot(153), &sent(&[(1, &[STEP_RIGHT])], 400)), (vec![155], 0));
@@ -203,7 +203,7 @@ fn a_packet_before_boot_is_over_is_dropped_without_a_fault() {
 }
 
 #[test]
-fn the_paced_host_makes_tick_follow_tick() {
+fn ticks_of_the_paced_host_follow_each_other() {
     // "packet j starts at boot + 1 + j*M*Ts (then tick follows tick without a pause)": M*Ts = 4*50.
     let config = Config { boot: 100, step_period: 50, ..base() };
     let packets = vec![vec![1], vec![2], vec![3]];

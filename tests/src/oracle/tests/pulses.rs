@@ -43,7 +43,7 @@ fn check(config: &Config, rows: &[Row]) {
 }
 
 #[test]
-fn per_channel_simultaneous_all_rise_at_s_plus_d() {
+fn simultaneous_channels_all_rise_at_s_plus_d() {
     let config = Config { dir_setup: 3, pulse_width: 5, ..three() };
     check(
         &config,
@@ -55,7 +55,7 @@ fn per_channel_simultaneous_all_rise_at_s_plus_d() {
 }
 
 #[test]
-fn per_channel_dir_takes_its_level_at_c0_also_where_the_count_is_0() {
+fn dir_takes_its_level_at_c0_even_with_a_count_of_0() {
     check(&three(), &[([0x80, 0x00, 0x00], [&[], &[], &[]], &[(0, true)])]);
     // The next tick takes it back.
     let run = run(&three(), &sent(&[(1, &[0x80, 0x80, 0x00, 0x00, 0x80, 0x80])], 2_000));
@@ -66,7 +66,7 @@ fn per_channel_dir_takes_its_level_at_c0_also_where_the_count_is_0() {
 }
 
 #[test]
-fn per_channel_staggered_the_jth_that_fires_rises_j_d_later() {
+fn the_jth_staggered_channel_rises_j_d_later() {
     // "d = min(dp, floor(Ts/nd))": dp = 8, Ts = 30: 8 for nd = 1..=3. D = 1, W = 2.
     let config = Config { staggered: true, ..three() };
     check(
@@ -103,7 +103,7 @@ fn per_channel_staggered_the_jth_that_fires_rises_j_d_later() {
 }
 
 #[test]
-fn the_documents_staggered_numbers_hold() {
+fn staggered_edges_match_the_patents_numbers() {
     // Part E: Ts = 2.048 ms, dp = 0.518 ms, four motors: d = 0.512 ms. At 1 MHz, B = 16; committed at 633.
     let config = Config {
         clock_hz: 1_000_000,
@@ -122,7 +122,7 @@ fn the_documents_staggered_numbers_hold() {
 }
 
 #[test]
-fn common_simultaneous_lets_the_left_go_before_the_right() {
+fn with_a_common_dir_left_steps_precede_right_steps() {
     // W = 5, D = 3, H = 2: DIR = 0 at s, left at 3, DIR = 1 at D + W + H = 10, right at 2D + W + H = 13.
     let config = Config { common_dir: true, pulse_width: 5, dir_setup: 3, dir_hold: 2, ..three() };
     check(
@@ -142,7 +142,7 @@ fn common_simultaneous_lets_the_left_go_before_the_right() {
 }
 
 #[test]
-fn common_simultaneous_with_single_cycles_is_the_patents_five_cycle_sequence() {
+fn minimum_times_give_the_patents_five_cycle_sequence() {
     let config =
         Config { common_dir: true, pulse_width: 1, dir_setup: 1, dir_hold: 0, step_period: 4, ..three() };
     assert!(!refused(&config));
@@ -153,7 +153,7 @@ fn common_simultaneous_with_single_cycles_is_the_patents_five_cycle_sequence() {
 }
 
 #[test]
-fn common_staggered_orders_the_left_ascending_then_the_right_ascending() {
+fn staggered_with_common_dir_left_channels_precede_right_ones() {
     // d = 8, D = 1, W = 2; "DIR = 1 at (rise of the first right one) - D".
     let config = Config { common_dir: true, staggered: true, ..three() };
     check(
@@ -176,7 +176,7 @@ fn common_staggered_orders_the_left_ascending_then_the_right_ascending() {
 }
 
 #[test]
-fn positions_in_common_mode_count_by_the_line_as_it_is_at_the_rise() {
+fn positions_count_by_the_common_dir_at_the_rise() {
     for staggered in [false, true] {
         let config = Config { common_dir: true, staggered, dir_setup: 0, ..three() };
         let run = run(&config, &sent(&[(1, &[0x83, 0x02, 0x81])], 2_000));

@@ -34,7 +34,7 @@ fn de_rises_10_bits_after_the_zero_and_the_first_start_bit_falls_one_bit_later()
 }
 
 #[test]
-fn de_is_high_for_b_cycles_and_ten_bits_a_byte_of_the_positions_at_most_811_bits() {
+fn de_is_high_for_one_bit_and_ten_bits_per_byte() {
     // POSITIONS is as long as STATUS. 17 + 4*n bytes: 160*(17 + 4*n) + 16 cycles.
     for channels in 1..=16 {
         let config = Config { channels, step_period: 100, ..framed(5) };
@@ -47,7 +47,7 @@ fn de_is_high_for_b_cycles_and_ten_bits_a_byte_of_the_positions_at_most_811_bits
 }
 
 #[test]
-fn a_reply_is_sent_at_the_receivers_rate_and_not_by_its_bit_time() {
+fn a_reply_is_sent_at_the_exact_rate_not_in_rounded_bits() {
     // Clock/rate = 11.1, B = 11; p = 1 + floor(7*10000/90) + 5 + 99 = 882.
     let uneven = Config { clock_hz: 1_000, baud: 90, receiver_baud: 90, ..framed(5) };
     // 15.5, B = 16; the host sends at 16.
@@ -71,7 +71,7 @@ fn a_reply_is_sent_at_the_receivers_rate_and_not_by_its_bit_time() {
 }
 
 #[test]
-fn rx_is_1_while_de_is_high_whatever_the_host_does_or_the_line_is_forced_to() {
+fn rx_is_1_while_de_is_high() {
     let low = input(&[(1, status_of(5))], &[(1_300, 10_000, false)], 8_000);
     let run = run(&framed(5), &low);
     let rx = edges(&run, bits::RX);
@@ -101,7 +101,7 @@ fn a_byte_in_progress_when_de_rises_samples_ones() {
 }
 
 #[test]
-fn what_the_host_sends_during_a_reply_is_lost_and_what_comes_after_it_is_heard() {
+fn bytes_sent_during_a_reply_are_lost_and_later_ones_received() {
     let order = |start| [(1, status_of(5)), (start, frame(5, STOP, &[]))];
     let en = |start| edges(&run(&framed(5), &input(&order(start), &[], 12_000)), bits::EN);
     assert_eq!(en(1_500), []);
@@ -112,7 +112,7 @@ fn what_the_host_sends_during_a_reply_is_lost_and_what_comes_after_it_is_heard()
 }
 
 #[test]
-fn a_controller_hears_the_others_replies_and_they_change_nothing() {
+fn replies_of_other_controllers_change_nothing() {
     let configs = [framed(5), Config { receiver_baud: 1_010, ..framed(6) }];
     let sends = [(1, status_of(5)), (5_000, status_of(6))];
     let runs = run_line(&configs, &input(&sends, &[], 10_000));
@@ -139,7 +139,7 @@ fn a_controller_hears_the_others_replies_and_they_change_nothing() {
 }
 
 #[test]
-fn two_replies_at_once_are_heard_as_their_and() {
+fn simultaneous_replies_are_received_as_their_and() {
     // The same address twice: both answer, one READY and one BUSY, at rates a little apart.
     let busy = Config { boot: 100_000, receiver_baud: 1_030, ..framed(5) };
     let configs = [framed(5), busy, framed(6)];
@@ -159,7 +159,7 @@ fn two_replies_at_once_are_heard_as_their_and() {
 }
 
 #[test]
-fn a_forced_level_overrides_a_controllers_reply_as_well() {
+fn a_forced_level_overrides_a_reply() {
     let configs = [framed(5), framed(6)];
     // A low in a high bit of the first byte (bit 0, from 1465), a high in its start bit.
     for (cycle, level) in [(1_470, false), (1_450, true)] {

@@ -26,7 +26,7 @@ fn run_one(config: &Config, start: u64, list: &[Segment], cycles: u64) -> Run {
 }
 
 #[test]
-fn each_step_comes_an_interval_after_the_one_before() {
+fn each_step_follows_the_last_after_its_interval() {
     let (half, quarter) = (ONE / 2, ONE / 4);
     let rows: &[(u64, &[Segment], &[u64])] = &[
         (10, &[left(3, 10 * ONE, 0)], &[20, 30, 40]),
@@ -60,7 +60,7 @@ fn each_step_comes_an_interval_after_the_one_before() {
 }
 
 #[test]
-fn dir_changes_when_its_segment_begins_but_not_before_the_last_pulse_has_been_held() {
+fn dir_changes_with_its_segment_after_the_hold_time() {
     let ten = 10 * ONE;
     let rows: &[DirRow] = &[
         // "0 at the start"; "before the first pulse at next >> 16".
@@ -91,7 +91,7 @@ fn dir_changes_when_its_segment_begins_but_not_before_the_last_pulse_has_been_he
 }
 
 #[test]
-fn every_channel_has_its_own_list_and_the_line_rests() {
+fn every_channel_has_its_own_list_and_the_line_is_idle() {
     let config = Config { channels: 3, ..base() };
     let lists = [(1, vec![right(2, 10 * ONE, 0)]), (5, vec![left(1, 20 * ONE, 0)])];
     let run = run_segments(&config, &lists, 100).expect("both are taken");
@@ -102,7 +102,7 @@ fn every_channel_has_its_own_list_and_the_line_rests() {
 }
 
 #[test]
-fn a_run_that_ends_early_counts_what_has_risen() {
+fn a_run_that_ends_early_counts_the_risen_pulses() {
     for (cycles, position, trace) in [(0, 0, 0), (11, 0, 2), (12, 1, 3), (21, 1, 4), (22, 2, 5)] {
         let run = run_one(&base(), 1, &[right(2, 10 * ONE, 0)], cycles);
         assert_eq!((run.positions[0], run.trace.len()), (position, trace), "{cycles} cycles");
@@ -110,7 +110,7 @@ fn a_run_that_ends_early_counts_what_has_risen() {
 }
 
 #[test]
-fn a_list_is_refused_by_the_segment_that_breaks_a_rule() {
+fn a_refused_list_names_the_first_invalid_segment() {
     use Rule::{IntervalLeavesU64, NextLeavesU64, NoSteps, ShortInterval, StartBeforeCycle1};
     let max = u64::MAX;
     let ten = 10 * ONE;

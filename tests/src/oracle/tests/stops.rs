@@ -47,7 +47,7 @@ fn run_sent(config: &Config, sends: &[(u64, Vec<u8>)], cycles: u64) -> Run {
 }
 
 #[test]
-fn ticks_start_in_the_cycle_after_the_frames_zero_and_follow_without_a_pause() {
+fn ticks_start_in_the_cycle_after_the_zero_without_pauses() {
     let run = run_sent(&long(), &[ticks(3_000, 0, &[0x81, 0x01, 0x81])], 40_000);
     assert_eq!(edges(&run, bits::DIR), [(3_001, true), (11_001, false), (19_001, true)]);
     assert_eq!(steps(&run, 0), [3_011, 11_011, 19_011]);
@@ -55,7 +55,7 @@ fn ticks_start_in_the_cycle_after_the_frames_zero_and_follow_without_a_pause() {
 }
 
 #[test]
-fn en_follows_orders_in_the_next_cycle() {
+fn en_follows_commands_in_the_next_cycle() {
     let orders = [order(2_000, DISABLE), order(4_000, DISABLE), order(6_000, ENABLE), order(8_000, ENABLE)];
     let run = run_sent(&long(), &orders, 10_000);
     assert_eq!(edges(&run, bits::EN), [(2_001, false), (6_001, true)]);
@@ -90,7 +90,7 @@ fn stop_ends_everything_in_the_next_cycle() {
 }
 
 #[test]
-fn stop_abandons_a_tick_in_its_last_cycle_and_a_start_in_the_next_does_not_happen() {
+fn stop_in_the_last_cycle_of_a_tick_cancels_the_next_start() {
     // With D = 0, STEP rises with c0 itself.
     let config = Config { dir_setup: 0, ..long() };
     let stopped_at = |p| run_sent(&config, &[ticks(P, 0, &[0x84, 0x04]), order(p, STOP)], 30_000);
@@ -107,7 +107,7 @@ fn stop_abandons_a_tick_in_its_last_cycle_and_a_start_in_the_next_does_not_happe
 }
 
 #[test]
-fn after_stop_the_next_tick_does_not_wait_for_the_end_of_the_abandoned_one() {
+fn after_stop_the_next_tick_starts_immediately() {
     let orders = [
         ticks(P, 0, &[0x84, 0x84]),
         order(5_000, STOP),
@@ -124,7 +124,7 @@ fn after_stop_the_next_tick_does_not_wait_for_the_end_of_the_abandoned_one() {
 }
 
 #[test]
-fn disable_is_busy_in_a_ticks_last_cycle_and_taken_at_its_end() {
+fn disable_is_busy_until_the_end_of_a_tick() {
     let disabled = |orders: &[u8], p| {
         let run = run_sent(&long(), &[ticks(P, 0, orders), order(p, DISABLE)], 40_000);
         (edges(&run, bits::EN), run.ticks_done)
@@ -139,7 +139,7 @@ fn disable_is_busy_in_a_ticks_last_cycle_and_taken_at_its_end() {
 }
 
 #[test]
-fn a_status_is_taken_after_the_sequencers_part_of_the_cycle() {
+fn a_status_has_the_state_after_the_sequencer() {
     let status_at = |orders: &[u8], p: u64| {
         let sends = [ticks(P, 0, orders), arriving(p, 5, STATUS, &[])];
         said(&long(), &run_sent(&long(), &sends, 20_000), 20_000)
@@ -153,7 +153,7 @@ fn a_status_is_taken_after_the_sequencers_part_of_the_cycle() {
 }
 
 #[test]
-fn positions_count_the_rises_up_to_and_including_the_frames_cycle() {
+fn positions_include_rises_in_the_cycle_of_the_frame() {
     let positions_at = |orders: &[u8], sends: &[(u64, Vec<u8>)], p: u64| {
         let sends = [&[ticks(P, 0, orders)], sends, &[arriving(p, 5, POSITIONS, &[])]].concat();
         said(&long(), &run_sent(&long(), &sends, 20_000), 20_000)
@@ -178,7 +178,7 @@ fn positions_count_the_rises_up_to_and_including_the_frames_cycle() {
 }
 
 #[test]
-fn a_place_freed_in_the_frames_cycle_is_free() {
+fn a_place_freed_in_the_cycle_of_the_frame_is_free() {
     let config = Config { queue_depth: 1, ..long() };
     for (p, faults, done) in [(E - 1, QUEUE_OVERFLOW, 2), (E, 0, 3)] {
         // The first runs, the second takes the place until e.
@@ -189,7 +189,7 @@ fn a_place_freed_in_the_frames_cycle_is_free() {
 }
 
 #[test]
-fn underrun_is_a_tick_with_counts_that_none_follows_in_the_cycle_of_its_end() {
+fn underrun_is_a_moving_tick_without_a_successor() {
     let faults = |config: &Config, sends: &[(u64, Vec<u8>)], cycles| run_sent(config, sends, cycles).faults;
     let first = |orders: &[u8]| ticks(P, 0, orders);
     // In cycle e.

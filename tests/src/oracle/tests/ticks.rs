@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_tick_starts_in_the_cycle_after_its_commit_when_nothing_runs() {
+fn an_idle_sequencer_starts_a_tick_in_the_next_cycle() {
     // p = 153, c0 = 154: DIR takes its level at c0, STEP rises at s + D = 155.
     let run = run(&base(), &sent(&[(1, &[0x81])], 400));
     assert_eq!(edges(&run, bits::DIR), [(154, true)]);
@@ -11,7 +11,7 @@ fn a_tick_starts_in_the_cycle_after_its_commit_when_nothing_runs() {
 }
 
 #[test]
-fn the_next_tick_starts_at_the_end_of_the_one_before_or_after_its_own_commit() {
+fn the_next_tick_starts_after_the_last_one_and_its_commit() {
     // "c0 = max(p + 1, e)": ticks of 4*50 = 200 cycles, the first from 154 to e = 354.
     let config = Config { step_period: 50, ..base() };
     for (second_start, p, c0) in
@@ -45,7 +45,7 @@ fn ticks_are_counted_at_their_end() {
 }
 
 #[test]
-fn burst_fires_in_the_first_slots_and_spread_over_the_tick() {
+fn burst_steps_in_the_first_slots_and_spread_over_the_tick() {
     // burst "if k < c"; spread "floor(((k+1)*c + h)/M) > floor((k*c + h)/M) with h = floor(M/2)".
     let rows: &[(u64, u64, &[u64], &[u64])] = &[
         // M, c, burst, spread
@@ -74,7 +74,7 @@ fn burst_fires_in_the_first_slots_and_spread_over_the_tick() {
 }
 
 #[test]
-fn a_spread_tick_fires_as_often_as_it_was_told() {
+fn a_spread_tick_has_the_requested_steps() {
     for slots in 1..=127 {
         let config = Config { slots, spread: true, ..base() };
         for count in 0..=slots {
@@ -99,14 +99,14 @@ fn positions_count_rises_by_the_direction_of_the_same_cycle() {
 }
 
 #[test]
-fn at_rest_step_is_0_and_dir_keeps_its_level() {
+fn when_idle_step_is_0_and_dir_keeps_its_level() {
     let run = run(&Config { channels: 2, ..base() }, &sent(&[(1, &[0x81, 0x01])], 3_000));
     assert_eq!(edges(&run, bits::DIR), [(314, true)]);
     assert_eq!(run.trace.last(), Some(&(317, 1 << 16 | 0b0111 << 32)));
 }
 
 #[test]
-fn a_configuration_is_refused_by_the_rules_of_a4_and_a7() {
+fn configurations_are_refused_by_the_timing_rules() {
     // W = 2, D + H = 2: L = 4.
     let simultaneous = |step_period| Config { step_period, ..base() };
     let common = |step_period| Config { step_period, common_dir: true, ..base() };

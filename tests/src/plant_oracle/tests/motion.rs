@@ -12,7 +12,7 @@ fn natural_frequency_of_the_default_motor() {
 }
 
 #[test]
-fn rest_under_gravity() {
+fn standstill_under_gravity() {
     for (gravity_torque_mn_m, x) in [(50.0, -0.113134), (150.0, -0.355864), (250.0, -0.690160)] {
         let motor = Motor { gravity_torque_mn_m, friction_mn_m: 0.0, ..Motor::default() };
         let run = run(&alone(motor, &Bus::default(), 80_000));
@@ -105,7 +105,7 @@ fn rings(motor: &Motor, away: f64, steps: usize) -> Vec<f64> {
 }
 
 #[test]
-fn the_default_rotor_rings_at_282_hz() {
+fn the_default_rotor_oscillates_at_282_hz() {
     let motor = Motor { friction_mn_m: 0.0, ..Motor::default() };
     let x = rings(&motor, 0.01, 20_000);
     // Maxima by the parabola through the three points around them: (time in grid steps, height).
@@ -123,7 +123,7 @@ fn the_default_rotor_rings_at_282_hz() {
 }
 
 #[test]
-fn two_masses_ring_at_98_and_456_hz() {
+fn two_masses_oscillate_at_98_and_456_hz() {
     let motor = Motor {
         friction_mn_m: 0.0,
         viscous_un_m_s: 0.0,

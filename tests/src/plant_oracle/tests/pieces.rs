@@ -23,7 +23,7 @@ fn splitmix64_gives_its_published_values() {
 }
 
 #[test]
-fn quarter_turns_are_exact_and_the_sine_is_a_sine() {
+fn quarter_turns_are_exact_and_the_sine_is_accurate() {
     for (q, expected) in [(0.0, (0.0, 1.0)), (1.0, (1.0, 0.0)), (-1.0, (-1.0, 0.0)), (6.0, (0.0, -1.0))] {
         assert_eq!(sincos(q), expected, "{q}");
     }
@@ -56,7 +56,7 @@ fn a_dwell_delays_and_dir_waits_for_the_fall() {
 }
 
 #[test]
-fn what_the_grid_cannot_follow_is_refused() {
+fn a_motor_too_fast_for_the_grid_is_refused() {
     let case = |change: fn(&mut Motor), step_cycles| {
         let mut motor = Motor::default();
         change(&mut motor);

@@ -18,7 +18,7 @@ fn a_seed_gives_one_case_and_its_run_is_finite() {
 }
 
 #[test]
-fn of_random_cases_every_kind_comes() {
+fn random_cases_include_every_kind() {
     let cases: Vec<Case> = (0..300).map(random_case).collect();
     let some = |kind: &dyn Fn(&Case) -> bool| cases.iter().filter(|case| kind(case)).count();
     let motor = |kind: &dyn Fn(&Motor) -> bool| some(&|case: &Case| case.motors.iter().flatten().any(kind));

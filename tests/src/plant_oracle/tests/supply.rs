@@ -80,7 +80,7 @@ fn self_test_of_the_patent_set() {
 }
 
 #[test]
-fn overload_comes_in_cycle_39280_or_never() {
+fn overload_occurs_in_cycle_39280_or_never() {
     for (stagger, expected) in [(0, Some(39_280)), (8192, None)] {
         let mut case = four(Motor::default(), 4, stagger);
         case.plant.current_sensor.bandwidth_hz = 5000.0;
@@ -90,7 +90,7 @@ fn overload_comes_in_cycle_39280_or_never() {
 }
 
 #[test]
-fn the_bus_has_a_floor_and_only_a_source_that_sinks_holds_it_down() {
+fn the_bus_has_a_minimum_and_only_a_sinking_source_limits_it() {
     for (source_sinks, i_load, least, most) in
         [(false, 1000.0, 1.5, 1.5), (false, -1.0, 70.0, 80.0), (true, -1.0, 24.09, 24.11)]
     {
