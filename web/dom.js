@@ -44,6 +44,14 @@ export function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+/** Draws a node unless that changes the height of what contains it. @param {HTMLElement} frame @param {Element} node @param {() => void} draw */
+export function drawInPlace(frame, node, draw) {
+  const { offsetHeight } = frame;
+  const before = [...node.childNodes];
+  draw();
+  if (frame.offsetHeight !== offsetHeight) fill(node, ...before);
+}
+
 /** Flashing elements and their timers. @type {WeakMap<Element, ReturnType<typeof setTimeout>>} */
 const flashes = new WeakMap();
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { cornerOf, movedCorner } from "../../web/state/corners.js";
+import { cornerOf, dragged, durationOf, movedCorner } from "../../web/state/corners.js";
 
 const cosine = { cosine: { duration_s: 0.4, ramp_s: 0.1 } };
 const trapezoid = { trapezoid: {} };
@@ -19,6 +19,8 @@ test("the corner is where the ramp meets the plateau", () => {
     [{ constant: {} }, { steps: 5 }],
     [cosine, { steps: 0 }],
     [trapezoid, { ...rates, max: 500 }],
+    // The area of the ramp, and so the plateau, is unknown.
+    [{ ramps: cosine.cosine }, { steps: 3200 }],
   ])
     assert.equal(cornerOf(move, of), null);
 });
@@ -42,6 +44,26 @@ test("an unsymmetric ramp keeps its share of the travel", () => {
   );
   assert.equal(ramp_s, 0.08);
   assert.ok(Math.abs(3200 / (duration_s - 0.6 * ramp_s) - 9000) < 1e-6);
+});
+
+test("a move ends where its corners say", () => {
+  const peak = 3200 / 0.3;
+  assert.equal(durationOf(cosine, { steps: 3200 }, { ramp_s: 0.1, top: peak }), 0.4);
+  // 900 steps in each ramp, 1400 steps at 8500 steps/s.
+  assert.ok(Math.abs(durationOf(trapezoid, rates, cornerOf(trapezoid, rates)) - (0.4 + 1400 / 8500)) < 1e-12);
+  // Without a plateau: up to 3200 steps/s and down in 0.2 s each.
+  const short = { steps: 640, start: 0, max: 9000, acceleration: 16_000 };
+  assert.ok(Math.abs(durationOf(trapezoid, short, cornerOf(trapezoid, short)) - 0.4) < 1e-12);
+});
+
+test("a drag changes only the digits that it means", () => {
+  const rows = [
+    [8533.3333, 8534.9, 8533.3333],
+    [8533.3333, 8551, 8550],
+    [0.1, 0.1294, 0.129],
+    [0.1, 0.0996, 0.0996],
+  ];
+  for (const [before, value, expected] of rows) assert.equal(dragged(before, value), expected, String(value));
 });
 
 test("a corner stays within the move", () => {

@@ -1,7 +1,9 @@
 /** The models of the motion view: units and lines of axes, the comparison with a baseline, and the cursor of a tap. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { setSchema } from "../../web/form/schema.js";
 import { tapped } from "../../web/time/timeline.js";
+import { axisNames } from "../../web/views/motion/axis_names.js";
 import { lookOf, otherAxes, scaleOf, unitFor, unitOf, unitsOf } from "../../web/views/motion/axis_units.js";
 import { comparedRows } from "../../web/views/motion/compared_rows.js";
 
@@ -45,7 +47,35 @@ test("all axes are drawn that are not hidden and have the unit", () => {
 test("sixteen axes have sixteen different lines", () => {
   const looks = Array.from({ length: 16 }, (_, axis) => JSON.stringify(lookOf(state({ axis: 5 }), axis)));
   assert.equal(new Set(looks).size, 16);
+  // That is the baseline.
+  assert.ok(!looks.some((look) => look.includes("--enable") && !look.includes('"dash":0')));
   assert.equal(lookOf(state({ derived: null }), 0).ink, "--actual", "there is no ideal curve");
+});
+
+test("the legend names what differs between the axes", () => {
+  const words = [
+    ["sigmoid", "sigmoid"],
+    ["straight", "straight"],
+  ].map(([name, label]) => ({ name, label, text: label }));
+  const move = (name, label) => ({ name, label, text: "", type: { group: "Ramps" } });
+  setSchema({
+    documents: {},
+    groups: {
+      Move: { fields: [move("ramps", "Ramps of a shape"), move("cosine", "Cosine S-curve")] },
+      Ramps: { fields: [{ name: "shape", label: "Shape", text: "shape", range: "", type: { words } }] },
+    },
+  });
+  const of = (...moves) =>
+    axisNames({ result: null, scenario: { source: { motion: { axes: moves.map((each) => ({ moves: each })) } } } });
+  const [sigmoid, straight, cosine] = [
+    { ramps: { shape: "sigmoid" } },
+    { ramps: { shape: "straight" } },
+    { cosine: {} },
+  ];
+  assert.deepEqual(of([sigmoid], [straight], [cosine]), ["sigmoid", "straight", "Cosine S-curve"]);
+  assert.deepEqual(of([sigmoid], [sigmoid]), []);
+  assert.deepEqual(of([sigmoid], [cosine, cosine]), ["sigmoid", ""]);
+  assert.deepEqual(axisNames({ result: null, scenario: { source: { packets: {} } } }), []);
 });
 
 test("a comparison says what changes, and what is undefined", () => {

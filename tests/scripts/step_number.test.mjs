@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { hasSlider, limitsIn, limitsOf, sliderStep } from "../../web/form/limits.js";
+import { hasSlider, limitsIn, limitsOf, sliderRange } from "../../web/form/limits.js";
+import { createScrub, isDrag } from "../../web/state/drag.js";
 import { added, placeAt, scrubPlace, stepped } from "../../web/state/step_number.js";
 
 /** A text with `|` for its caret after one step. */
@@ -45,6 +46,53 @@ test("a step keeps its place when the digit disappears", () => {
   assert.equal(stepped(zero.text, zero.caret, 1, zero.place).text, "100");
 });
 
+test("a step from a limit that is no whole step ends at one", () => {
+  const rows = [
+    ["0.000001", -1, 1, "0.1"],
+    ["0.000001", -1, 10, "1.0"],
+    ["0.000001 s", -1, 1, "0.1 s"],
+    ["0.2145", -2, -1, "0.21"],
+    ["-0.2145", -2, 1, "-0.21"],
+    ["86400", 0, -1, "86399"],
+    ["127", 1, -1, "120"],
+  ];
+  for (const [text, place, by, expected] of rows) assert.equal(added(text, place, by, true), expected, text);
+});
+
+test("a press becomes a drag after some pixels, and a finger that scrolls drags nothing", () => {
+  const at = (clientX, clientY, pointerType = "mouse", shiftKey = false) => ({
+    clientX,
+    clientY,
+    pointerType,
+    shiftKey,
+  });
+  for (const [to, expected] of [
+    [at(3, 0), false],
+    [at(3, 3), true],
+    [at(6, 6, "touch"), false],
+    [at(0, 10, "touch"), true],
+  ])
+    assert.equal(isDrag(at(0, 0), to), expected, JSON.stringify(to));
+
+  const mouse = createScrub(at(0, 0));
+  assert.deepEqual([at(3, 0), at(0, 9), at(8, 0), at(-8, 0)].map(mouse.move), [null, null, 2, -2]);
+  // A scroll that ends sideways.
+  const scroll = createScrub(at(0, 0));
+  assert.deepEqual([at(4, 40, "touch"), at(90, 41, "touch")].map(scroll.move), [null, null]);
+  // The way to the threshold counts for nothing.
+  const touch = createScrub(at(0, 0));
+  assert.deepEqual([at(11, 3, "touch"), at(15, 3, "touch"), at(35, 60, "touch")].map(touch.move), [0, 1, 6]);
+});
+
+test("Shift multiplies the movement while it is pressed", () => {
+  const at = (clientX, shiftKey) => ({ clientX, clientY: 0, pointerType: "mouse", shiftKey });
+  const { move } = createScrub(at(0, false));
+  assert.deepEqual(
+    [at(240, false), at(241, true), at(248, true), at(249, false), at(240, false)].map(move),
+    [60, 62, 80, 80, 78],
+  );
+});
+
 test("scrubbing steps by one to ten percent of the value", () => {
   const rows = [
     ["3200", false, 2],
@@ -84,5 +132,14 @@ test("limits follow from the range of a field, and a short range has a slider", 
     [{ kind: "quantity" }, false],
   ];
   for (const [field, expected] of rows) assert.equal(hasSlider({ key: "", ...field }), expected, JSON.stringify(field));
-  assert.deepEqual([sliderStep({ min: 0, max: 0.2 }, false), sliderStep({ min: 1, max: 9 }, true)], [0.001, 1]);
+  const ranges = [
+    [{ min: 0, max: 0.2 }, false, { min: 0, max: 0.2, step: 0.001 }],
+    [{ min: 1, max: 9 }, true, { min: 1, max: 9, step: 1 }],
+    // The steps count from 0, not from the smallest value.
+    [{ min: 0.00001, max: 0.1 }, false, { min: 0, max: 0.1, step: 0.0001 }],
+    [{ min: 0.3, max: 0.7 }, false, { min: 0.3, max: 0.7, step: 0.001 }],
+    [{ min: 0, max: 0.21455 }, false, { min: 0, max: 0.215, step: 0.001 }],
+    [{ min: -20, max: 0.5 }, false, { min: -20, max: 0.5, step: 0.1 }],
+  ];
+  for (const [limits, integer, expected] of ranges) assert.deepEqual(sliderRange(limits, integer), expected);
 });

@@ -1,5 +1,5 @@
 /** A field of the form: label, input or select, unit, hint and error. Invalid text is dispatched as a draft. */
-import { element, flash, setText } from "../dom.js";
+import { drawInPlace, element, flash, setText } from "../dom.js";
 import { get } from "../state/paths.js";
 import { addSteps } from "./steps.js";
 import { termButton } from "./term_button.js";
@@ -13,6 +13,7 @@ import { convert, isHex, isList, isSame, listTools, meaning, print, read } from 
  * @property {HTMLElement} root
  * @property {string} label
  * @property {(value: any, state: State) => void} show  Shows a value.
+ * @property {(value: any, state: State) => void} follow  Shows only the meaning of a value, without a change of layout.
  * @property {(message: string) => void} fail  Shows an error; empty clears it.
  * @property {() => void} focus
  */
@@ -76,7 +77,7 @@ export function control(path, field, { dispatch, now }) {
   const label = termButton(field.label, field.term, { id: `${id}-label`, tabindex: "-1" });
   const steps =
     input instanceof HTMLInputElement
-      ? addSteps(path, field, { input, label, value: () => value, dispatch, now })
+      ? addSteps(path, field, { input, label, value: () => value, retype, dispatch, now })
       : null;
   const root = element(
     "div",
@@ -94,6 +95,10 @@ export function control(path, field, { dispatch, now }) {
   /** The text that the user typed for `value`, which may differ from its printed form. @type {string | null} */
   let typed = null;
 
+  /** @param {string} text */
+  function retype(text) {
+    input.value = typed = text;
+  }
   /** @param {any} next */
   function edit(next) {
     typed = input.value;
@@ -117,7 +122,9 @@ export function control(path, field, { dispatch, now }) {
   });
   unitSelect?.addEventListener("change", () => {
     typed = null;
-    if (value) dispatch({ type: "edit", path, value: convert(value, unitSelect.value, path, now()) });
+    if (!value) return;
+    // A text that is no number stays as it was typed.
+    dispatch({ type: "edit", path, value: convert(value, unitSelect.value, path, now()), moved: [] });
   });
 
   /** Hides an unused field, unless it has an error. @param {State} state */
@@ -140,7 +147,7 @@ export function control(path, field, { dispatch, now }) {
       const typedValue = typed !== null ? read(typed, field, state, next) : null;
       if (typedValue && "value" in typedValue && isSame(typedValue.value, next) && input.value === typed) {
         // The typed text means this value, so it stays.
-      } else if (input.value !== text) {
+      } else if (input.value !== text && !steps?.isActive()) {
         input.value = text;
         typed = null;
         if (before !== undefined && document.activeElement !== input) flash(input);
@@ -150,6 +157,10 @@ export function control(path, field, { dispatch, now }) {
       if (unitSelect && next && typeof next === "object") unitSelect.value = Object.keys(next)[0];
       steps?.show(next, state);
       setText(meaningNode, meaning(next, field, state));
+    },
+    follow(next, state) {
+      const text = next === undefined ? "" : meaning(next, field, state);
+      if (meaningNode.textContent !== text) drawInPlace(root, meaningNode, () => setText(meaningNode, text));
     },
     fail(message) {
       setText(error, message);

@@ -1,5 +1,5 @@
 /** Shows the name and note of the scenario, and its derived values. */
-import { byId, element, fill, flash, setText } from "../dom.js";
+import { byId, drawInPlace, element, fill, flash, setText } from "../dom.js";
 import { derivedShown } from "../state/queries.js";
 import { derivedRows, moveNote } from "./derived_rows.js";
 import { documents } from "./schema.js";
@@ -29,8 +29,8 @@ export function showAbout({ scenario }) {
 
 const OF_LAST_RUN = "From the last run; the form has errors";
 
-/** @param {State} state @param {HTMLElement} form */
-export function showDerived(state, form) {
+/** @param {State} state @param {HTMLElement} form @param {boolean} [inPlace]  Whether the layout must not change. */
+export function showDerived(state, form, inPlace = false) {
   const root = byId("derived");
   const { derived, fresh } = derivedShown(state);
   root.classList.toggle("stale", !fresh);
@@ -38,6 +38,7 @@ export function showDerived(state, form) {
   const rows = derived ? derivedRows(state, derived) : [];
   const terms = [...root.querySelectorAll("dt")];
   if (rows.length !== terms.length || rows.some(([name], index) => terms[index].textContent !== name)) {
+    if (inPlace) return;
     fill(
       root,
       element(
@@ -53,7 +54,8 @@ export function showDerived(state, form) {
       const [, text, mark] = rows[index];
       value.classList.toggle("over", mark === "over");
       if (value.textContent === text) continue;
-      setText(value, text);
+      if (inPlace) drawInPlace(root, value, () => setText(value, text));
+      else setText(value, text);
       flash(value);
     }
   }
@@ -61,7 +63,9 @@ export function showDerived(state, form) {
     const { text, warning } = moveNote(note.dataset.note ?? "", { ...state, derived });
     note.classList.toggle("stale", !fresh);
     note.title = fresh ? "" : OF_LAST_RUN;
-    if (note.textContent !== text + warning)
-      fill(note, text, ...(warning ? [element("strong", { class: "short" }, warning)] : []));
+    const show = () => fill(note, text, ...(warning ? [element("strong", { class: "short" }, warning)] : []));
+    if (note.textContent === text + warning) continue;
+    if (inPlace) drawInPlace(note, note, show);
+    else show();
   }
 }

@@ -30,8 +30,11 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
   /** @type {State} */
   let state;
   const scroller = byId("sheet-scroll");
-  const pointer = createPointerHold(byId("sheet"), () => draw(state));
-  showHints(root);
+  /** The field of the sensor is in the spectrum. */
+  const sensor = byId("spectrum-sensor");
+  const roots = [root, sensor];
+  const pointer = createPointerHold([byId("sheet"), sensor], () => draw(state));
+  showHints(roots);
   keepFocusVisible(scroller);
   /** The state that the form shows. @type {State | undefined} */
   let drawn;
@@ -75,10 +78,18 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
     plant: (scenario) => plantItems(kit, scenario),
   };
 
+  /** Shows the view of the sensor's field. */
+  function showSpectrum() {
+    const { folded } = state.panes;
+    dispatch({ type: "pane", panes: { largest: null, folded: folded.filter((name) => name !== "spectrum") } });
+    dispatch({ type: "side", area: "spectrum", side: "spectrum" });
+    dispatch({ type: "view", view: "spectrum" });
+  }
+
   /** @param {Scenario} scenario */
   function build(scenario) {
     kit.clear();
-    const restoreFocus = saveFocus(root);
+    const restoreFocus = roots.map(saveFocus);
     const isLineless = hasNoLine(scenario);
     const shown = sections().filter(({ onLine }) => !(onLine && isLineless) || scenario.controllers.length > 0);
     const parts = shown.map(({ title, open, blocks, group, list }) =>
@@ -96,8 +107,16 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
       ]),
     );
     fill(root, kit.part("Source", true, sourceItems(scenario)), ...parts);
-    fill(byId("spectrum-sensor"), kit.row(SENSOR.path, field("Analysis", SENSOR.key)));
-    restoreFocus();
+    fill(sensor, kit.row(SENSOR.path, field("Analysis", SENSOR.key)));
+    const control = /** @type {import("./control.js").Control} */ (kit.controls.get(SENSOR.path));
+    kit.controls.set(SENSOR.path, {
+      ...control,
+      focus() {
+        showSpectrum();
+        control.focus();
+      },
+    });
+    for (const restore of restoreFocus) restore();
   }
 
   /** @param {Scenario} scenario */
@@ -116,7 +135,8 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
   /** Draws a state, unless the pointer is pressed. Returns the promise of the parts that the form loads. @param {State} next */
   function render(next) {
     state = next;
-    if (!pointer.isPressed()) draw(next);
+    if (pointer.isPressed()) follow(next);
+    else draw(next);
     return kit.loading();
   }
 
@@ -132,7 +152,7 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
   /** Rebuilds the form after a part of it has loaded. While the user types, it waits until the field loses the focus. */
   function rebuild() {
     const active = document.activeElement;
-    if (root.contains(active) && active?.matches("input:not([type=checkbox]), textarea")) {
+    if (roots.some((part) => part.contains(active)) && active?.matches("input:not([type=checkbox]), textarea")) {
       active.addEventListener("blur", () => setTimeout(rebuildNow), { once: true });
     } else rebuildNow();
   }
@@ -140,6 +160,12 @@ export function createForm({ root, samples, drivers, dispatch, remedies }) {
   function rebuildNow() {
     [shape, drawn] = ["", undefined];
     if (!pointer.isPressed()) draw(state);
+  }
+
+  /** Draws derived values and meanings while the pointer is pressed: they follow a dragged number. @param {State} next */
+  function follow(next) {
+    for (const [path, control] of kit.controls) control.follow(get(next.scenario, path), next);
+    if (blockedBy(next) !== "unvalidated") showDerived(next, root, true);
   }
 
   /** @param {State} next */

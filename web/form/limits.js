@@ -4,7 +4,7 @@ import { get } from "../state/paths.js";
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {{min: number, max: number}} Limits  In the unit of the field; infinite if unknown. */
 
-/** Maximum values of a slider for whole numbers, and the greatest length of a range of other numbers. */
+/** Maximum values of a slider for whole numbers, and the maximum length of a range of other numbers. */
 const [MAX_VALUES, MAX_LENGTH] = [128, 20];
 /** A slider has at least this number of steps. */
 const SLIDER_STEPS = 100;
@@ -35,7 +35,15 @@ export function hasSlider({ kind, range = "" }) {
   return kind === "number" && (isHalf(range) || max - min <= MAX_LENGTH);
 }
 
-/** The step of a slider: a power of ten. @param {Limits} limits @param {boolean} integer */
-export function sliderStep({ min, max }, integer) {
-  return integer ? 1 : Number(`1e${Math.floor(Math.log10((max - min) / SLIDER_STEPS))}`);
+/**
+ * The range of a slider in whole steps, which are powers of ten. Its ends may exceed the limits, because a slider counts its
+ * steps from its minimum.
+ * @param {Limits} limits @param {boolean} integer
+ */
+export function sliderRange({ min, max }, integer) {
+  const place = integer ? 0 : Math.floor(Math.log10((max - min) / SLIDER_STEPS));
+  const step = Number(`1e${place}`);
+  // Divisions such as 0.3 / 0.1 are not exact.
+  const [first, last] = [Math.floor(min / step + 1e-6), Math.ceil(max / step - 1e-6)];
+  return { min: Number(`${first}e${place}`), max: Number(`${last}e${place}`), step };
 }

@@ -3,37 +3,60 @@
  * otherwise a fast gesture would replace every run before its picture.
  */
 
-/** @param {(message: import("../state/message.js").Message) => void} dispatch */
-export function createLiveEdit(dispatch) {
-  /** The newest edit that has not been made. @type {(() => void) | null} */
-  let next = null;
+/**
+ * @param {Node} owner  If it is removed, the gesture ends.
+ * @param {Pick<import("../state/types.js").Page, "dispatch" | "now">} page
+ * @param {{commits?: boolean}} [options]  `commits`: false if the caller ends the step of undo.
+ */
+export function createLiveEdit(owner, { dispatch, now }, { commits = true } = {}) {
+  /** The pending edit. @type {(() => void) | null} */
+  let pending = null;
+  /** The steps of redo before the gesture. @type {import("../state/types.js").State["future"]} */
+  let future = [];
   let frame = 0;
 
   function take() {
-    const edit = next;
-    next = null;
+    const edit = pending;
+    pending = null;
     edit?.();
   }
 
   function follow() {
+    if (!owner.isConnected) return end();
     if (document.documentElement.dataset.state === "ready") take();
     frame = requestAnimationFrame(follow);
+    return undefined;
+  }
+
+  function stop() {
+    cancelAnimationFrame(frame);
+    frame = 0;
+  }
+
+  function end() {
+    if (!frame) return;
+    stop();
+    take();
+    if (commits) dispatch({ type: "committed" });
   }
 
   return {
+    isActive: () => frame !== 0,
     /** Makes an edit as soon as the page is ready; the first one starts the gesture. @param {() => void} edit */
     edit(edit) {
-      next = edit;
+      pending = edit;
       if (frame) return;
-      dispatch({ type: "committed" });
+      if (commits) dispatch({ type: "committed" });
+      ({ future } = now());
       follow();
     },
-    end() {
+    end,
+    /** Ends the gesture without its edits. */
+    cancel() {
       if (!frame) return;
-      cancelAnimationFrame(frame);
-      frame = 0;
-      take();
-      dispatch({ type: "committed" });
+      stop();
+      pending = null;
+      dispatch({ type: "canceled", future });
     },
   };
 }

@@ -4,8 +4,8 @@ import { byId, setText } from "../dom.js";
 /** Maximum time between the clicks of a double-click, in ms. */
 const DOUBLE_CLICK_MS = 500;
 
-/** Shows the hint of the focused field below the form, in a line of constant height, so that no field moves. @param {HTMLElement} root */
-export function showHints(root) {
+/** Shows the hint of the focused field below the form, in a line of constant height, so that no field moves. @param {HTMLElement[]} roots */
+export function showHints(roots) {
   const hint = byId("field-hint");
   const hasKeys = matchMedia("(hover: hover)").matches;
   const general = `Drag a label sideways to change its number${hasKeys ? ", or press ↑ or ↓ in the field; with Shift, ten steps" : ""}.`;
@@ -15,11 +15,13 @@ export function showHints(root) {
     hint.scrollTop = 0;
   };
   show("");
-  root.addEventListener("focusin", ({ target }) => {
-    const field = /** @type {Element} */ (target).closest(".field:not(.wide)");
-    show(field?.querySelector(".hint")?.textContent ?? "");
-  });
-  root.addEventListener("focusout", () => show(""));
+  for (const root of roots) {
+    root.addEventListener("focusin", ({ target }) => {
+      const field = /** @type {Element} */ (target).closest(".field:not(.wide)");
+      show(field?.querySelector(".hint")?.textContent ?? "");
+    });
+    root.addEventListener("focusout", () => show(""));
+  }
 }
 
 /** Keeps the focused field visible when messages below the form reduce its height. @param {HTMLElement} scroller */
@@ -46,16 +48,17 @@ export function keepFocusVisible(scroller) {
 
 /**
  * Delays drawing while the pointer is pressed on the form, so that nothing moves between press and release. A select opens at
- * the press, and browsers do not always report its end, so it does not count.
- * @param {HTMLElement} root @param {() => void} draw  Called after the release.
+ * the press and the right button opens a menu; browsers do not always report their end, so they do not count.
+ * @param {HTMLElement[]} roots @param {() => void} draw  Called after the release.
  */
-export function createPointerHold(root, draw) {
+export function createPointerHold(roots, draw) {
   let isPressed = false;
   /** Callbacks that wait for the release. @type {(() => void)[]} */
   const waiting = [];
-  root.addEventListener("pointerdown", ({ target }) => {
-    isPressed = !(/** @type {Element} */ (target).closest("select"));
-  });
+  for (const root of roots)
+    root.addEventListener("pointerdown", ({ target, button }) => {
+      isPressed = button === 0 && !(/** @type {Element} */ (target).closest("select"));
+    });
   // Only after the click event, which follows the release.
   const release = () =>
     setTimeout(() => {
@@ -64,7 +67,7 @@ export function createPointerHold(root, draw) {
       draw();
       for (const resolve of waiting.splice(0)) resolve();
     });
-  for (const event of ["pointerup", "pointercancel", "keydown", "blur"]) window.addEventListener(event, release);
+  for (const event of ["pointerup", "pointercancel", "blur"]) window.addEventListener(event, release);
   const released = async () => {
     if (isPressed) await new Promise((/** @type {(value?: any) => void} */ resolve) => waiting.push(resolve));
   };

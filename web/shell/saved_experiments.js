@@ -14,11 +14,19 @@ export async function openSaved({ engine, dispatch }, saved) {
 export function createSavedExperiments(page) {
   const panel = byId("experiments-panel");
   const name = /** @type {HTMLInputElement} */ (byId("experiment-name"));
-  // The name can be typed before the rest of the panel is loaded.
-  panel.addEventListener("beforetoggle", () => {
-    name.value = String(page.now().scenario.title ?? "");
+  /** The title that the field last showed, and the number of its experiment. */
+  let [shown, of] = ["", -1];
+  // The name can be typed before the rest of the panel is loaded. It stays until another experiment is opened.
+  panel.addEventListener("beforetoggle", (event) => {
+    const { scenario, opened } = page.now();
+    const title = String(scenario.title ?? "");
+    const isOpen = /** @type {ToggleEvent} */ (event).newState === "open";
+    if (isOpen && (name.value === shown || opened !== of)) [name.value, of] = [title, opened];
+    if (name.value === title) shown = title;
   });
-  panel.addEventListener("toggle", () => name.select());
+  panel.addEventListener("toggle", (event) => {
+    if (/** @type {ToggleEvent} */ (event).newState === "open") name.select();
+  });
   return createLazyPopover(
     "experiments",
     "experiments-panel",

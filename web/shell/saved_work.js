@@ -26,7 +26,7 @@ export async function savedWork(engine, fallback, version) {
 }
 
 /** @param {string} scenario @returns {import("../state/types.js").Moment} */
-const momentOf = (scenario) => ({ scenario: readJson(scenario), origin: "own", borrowed: OWN_TEXTS });
+const momentOf = (scenario) => ({ scenario: readJson(scenario), origin: "own", borrowed: OWN_TEXTS, drafts: {} });
 
 /** Offers work that another tab saved after this one's. @param {{engine: Engine} & import("../state/types.js").Page} page */
 export async function offerNewer({ engine, dispatch }) {

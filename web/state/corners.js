@@ -19,6 +19,8 @@ export function cornerOf(move, { steps, start = 0, max = 0, acceleration = 0, pe
   if (!(steps > 0)) return null;
   if (TIMED.includes(kind)) {
     const { duration_s, ramp_s } = move[kind];
+    // The area below a ramp of a shape is unknown.
+    if (kind === "ramps" && peak === undefined) return null;
     const top = peak ?? steps / (duration_s - ramp_s);
     return top > 0 && Number.isFinite(top) ? { ramp_s, top } : null;
   }
@@ -26,6 +28,19 @@ export function cornerOf(move, { steps, start = 0, max = 0, acceleration = 0, pe
   // A short move turns before its maximum speed: v² = v0² + 2·a·x in the middle.
   const top = Math.min(max, Math.sqrt(start * start + acceleration * steps));
   return { ramp_s: (top - start) / acceleration, top };
+}
+
+/** Duration of a move with this corner. @param {{[kind: string]: any}} move @param {Rates} rates @param {Corner} corner */
+export function durationOf(move, { steps, start = 0 }, { ramp_s, top }) {
+  const [kind] = Object.keys(move);
+  // Both ramps of a trapezoid have the mean speed of its start and its top.
+  return TIMED.includes(kind) ? move[kind].duration_s : ramp_s + (steps - ramp_s * start) / top;
+}
+
+/** A dragged value with 3 digits; the value before if the drag means no other one. @param {number} before @param {number} value */
+export function dragged(before, value) {
+  const [old, next] = [before, value].map((each) => Number(each.toPrecision(3)));
+  return old === next ? before : next;
 }
 
 /**

@@ -26,7 +26,9 @@ export function edit(state, { path, value, joins = false, moved = [[path, null]]
   );
   if (Object.is(get(state.scenario, path), value)) return { ...state, drafts };
   const joined = joins && state.edited === path;
-  const before = joined ? state : remember(state);
+  // What was typed on the way to a valid value of the field is no step.
+  const { [path]: _, ...others } = state.drafts;
+  const before = joined ? state : remember({ ...state, drafts: others });
   const { scenario, borrowed } = withOwnName(state, set(state.scenario, path, value));
   return { ...changed(before, scenario, "own"), borrowed, drafts, edited: joins ? path : null };
 }
@@ -53,8 +55,13 @@ function changedFrom(title) {
 }
 
 /** @param {State} state @returns {import("./types.js").Moment} */
-function momentOf({ scenario, origin, borrowed }) {
-  return { scenario, origin, borrowed };
+function momentOf({ scenario, origin, borrowed, drafts }) {
+  return { scenario, origin, borrowed, drafts };
+}
+
+/** @param {State} state @param {import("./types.js").Moment} moment @returns {State} */
+function restored(state, { scenario, origin, borrowed, drafts = {} }) {
+  return { ...changed(state, scenario, origin), borrowed, drafts };
 }
 
 /** @param {State} state @returns {State} */
@@ -83,12 +90,30 @@ export function changed(state, scenario, origin) {
   };
 }
 
-/** Undo or redo. @param {State} state @param {"past" | "future"} from @param {"past" | "future"} to @returns {State} */
-export function travel(state, from, to) {
-  // Undo discards drafts first.
-  if (from === "past" && Object.keys(state.drafts).length > 0) return { ...state, drafts: {}, edited: null };
-  const moment = state[from][state[from].length - 1];
+/** @param {State} state @returns {State} */
+export function undo(state) {
+  const [moment] = state.past.slice(-1);
+  // Drafts that are newer than the last edit are a step of their own.
+  const known = Object.values(moment?.drafts ?? {}).map(({ text }) => text);
+  const drafts = Object.entries(state.drafts).filter(([, { text }]) => known.includes(text));
+  const future = [...state.future, momentOf(state)].slice(-DEPTH);
+  if (drafts.length < Object.keys(state.drafts).length)
+    return { ...state, drafts: Object.fromEntries(drafts), edited: null, future };
+  return moment ? { ...restored(state, moment), past: state.past.slice(0, -1), future } : state;
+}
+
+/** @param {State} state @returns {State} */
+export function redo(state) {
+  const [moment] = state.future.slice(-1);
   if (!moment) return state;
-  const moved = { ...changed(state, moment.scenario, moment.origin), borrowed: moment.borrowed };
-  return { ...moved, [from]: state[from].slice(0, -1), [to]: [...state[to], momentOf(state)].slice(-DEPTH) };
+  const future = state.future.slice(0, -1);
+  if (moment.scenario === state.scenario) return { ...state, drafts: moment.drafts, edited: null, future };
+  return { ...restored(state, moment), past: [...state.past, momentOf(state)].slice(-DEPTH), future };
+}
+
+/** Takes the edits of a canceled gesture back. @param {State} state @param {State["future"]} future  Before the gesture. @returns {State} */
+export function cancelEdit(state, future) {
+  const [moment] = state.past.slice(-1);
+  if (state.edited === null || !moment) return state;
+  return { ...restored(state, moment), past: state.past.slice(0, -1), future };
 }

@@ -4,7 +4,7 @@
  * @typedef {import("./types.js").State} State
  * @typedef {{type: "edit", path: string, value: any, joins?: boolean, moved?: import("./paths.js").Moved}
  *   | {type: "draft", path: string, text: string, message: string}
- *   | {type: "committed"}
+ *   | {type: "committed"} | {type: "canceled", future: State["future"]}
  *   | {type: "replace", scenario: import("./types.js").Scenario, origin: import("./types.js").Origin}
  *   | {type: "undo"} | {type: "redo"}
  *   | {type: "validated", revision: number, validation: import("./types.js").Validation}

@@ -40,13 +40,25 @@ export function scrubPlace(text, integer) {
   return integer ? Math.max(0, place) : place;
 }
 
-/** A typed number plus `by` × 10^`place`, with the same separator and unit; null without a number. @param {string} text @param {number} place @param {number} by */
-export function added(text, place, by) {
+/**
+ * A typed number plus `by` × 10^`place`, with the same separator and unit; null without a number.
+ * @param {string} text @param {number} place @param {number} by @param {boolean} [rounds]  Whether the number is first rounded away
+ *   from the result: the value 0.000001 at its limit becomes 0.1, not 0.100001.
+ */
+export function added(text, place, by, rounds = false) {
   const parts = partsOf(text);
   if (!parts) return null;
   const { sign, whole, mark, decimals, rest } = parts;
-  const length = Math.max(decimals.length, -place);
-  const before = BigInt(`${whole}${decimals.padEnd(length, "0")}`) * (/[-−]/.test(sign) ? -1n : 1n);
+  let length = Math.max(decimals.length, -place);
+  let before = BigInt(`${whole}${decimals.padEnd(length, "0")}`) * (/[-−]/.test(sign) ? -1n : 1n);
+  if (rounds) {
+    const unit = 10n ** BigInt(place + length);
+    const above = ((before % unit) + unit) % unit;
+    before += by > 0 || above === 0n ? -above : unit - above;
+    const short = Math.max(0, -place);
+    before /= 10n ** BigInt(length - short);
+    length = short;
+  }
   const next = before + BigInt(by) * 10n ** BigInt(place + length);
   const digits = String(next < 0n ? -next : next).padStart(length + 1, "0");
   const point = digits.length - length;
@@ -55,11 +67,11 @@ export function added(text, place, by) {
 
 /**
  * Steps the digit before the caret, which stays behind it. @param {string} text @param {number} caret @param {number} by
- * @param {number} [place]  The place of the previous step, because `100` − 100 has no hundreds left.
+ * @param {number} [place]  The place of the previous step, because `100` − 100 has no hundreds left. @param {boolean} [rounds]  See `added`.
  * @returns {Stepped | null}
  */
-export function stepped(text, caret, by, place = placeAt(text, caret) ?? 0) {
-  const next = added(text, place, by);
+export function stepped(text, caret, by, place = placeAt(text, caret) ?? 0, rounds = false) {
+  const next = added(text, place, by, rounds);
   return next === null ? null : { text: next, caret: caretAt(next, place), place };
 }
 

@@ -69,7 +69,7 @@
  * @typedef {{left: number, top: number, right: number, bottom: number}} Plot  CSS pixels in a canvas.
  * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the visible scenario comes from.
  * @typedef {{title: boolean, note: boolean}} Borrowed  Whether name and note are still those of the preset, link or file.
- * @typedef {{scenario: Scenario, origin: Origin, borrowed: Borrowed}} Moment  One step of the history.
+ * @typedef {{scenario: Scenario, origin: Origin, borrowed: Borrowed, drafts: State["drafts"]}} Moment  One step of the history.
  * @typedef {{revision: number, summary: Summary, ms: number, controller: number, derived: Derived | null}} Result  The result of a run, with the visible controller and the derived values of its scenario.
  * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
  *

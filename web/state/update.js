@@ -1,5 +1,5 @@
 /** Changes the state of the page: `update(state, message)`, without DOM, worker or clock. */
-import { changed, edit, remember, travel } from "./history.js";
+import { cancelEdit, changed, edit, redo, remember, undo } from "./history.js";
 import { FRESH_VIEW, OWN_TEXTS } from "./initial.js";
 import { MAX_CHANNELS } from "./limits.js";
 import { done, openView, selectController, validated } from "./result.js";
@@ -18,6 +18,8 @@ export function update(state, message) {
     }
     case "committed":
       return state.edited === null ? state : { ...state, edited: null };
+    case "canceled":
+      return cancelEdit(state, message.future);
     case "replace":
       return {
         ...changed(remember(state), message.scenario, message.origin),
@@ -26,9 +28,9 @@ export function update(state, message) {
         opened: state.opened + 1,
       };
     case "undo":
-      return travel(state, "past", "future");
+      return undo(state);
     case "redo":
-      return travel(state, "future", "past");
+      return redo(state);
     case "validated":
       return validated(state, message);
     case "approve":

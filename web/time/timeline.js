@@ -86,11 +86,16 @@ export function onTimeAxis(target, plot, page) {
       const { left, right } = plot();
       const x = event.clientX - target.getBoundingClientRect().left;
       if (used === true || x < left || x > right) return;
-      const which = event.shiftKey ? "b" : event.pointerType === "touch" ? tapped(now(), cycle) : "a";
-      dispatch({ type: "cursor", which, cycle: used === false ? cycle : await used });
+      setCursor(page, event, used === false ? cycle : await used);
     },
   });
   registerCommands(target, "Time axis (motion and pulses)", keys(page, plot));
+}
+
+/** Sets the cursor of a click. @param {Page} page @param {PointerEvent} event @param {number} cycle */
+export function setCursor({ dispatch, now }, { shiftKey, pointerType }, cycle) {
+  const which = shiftKey ? "b" : pointerType === "touch" ? tapped(now(), cycle) : "a";
+  dispatch({ type: "cursor", which, cycle });
 }
 
 /** The cursor that a tap sets: the first one that is not set, else the nearest one. @param {State} state @param {number} cycle @returns {"a" | "b"} */

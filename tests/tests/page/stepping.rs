@@ -97,7 +97,7 @@ fn a_dragged_label_changes_its_number_and_the_picture_follows() -> Result<()> {
         page.click("#undo").await?;
         page.until_digest(&before).await?;
         ensure!(page.eval::<bool>("document.getElementById('undo').disabled").await?, "one step of undo");
-        page.eval::<()>(&format!("({}).click()", label(DURATION))).await?;
+        page.js::<()>(&format!("{}.click(); return null;", label(DURATION)), vec![]).await?;
         page.until("document.querySelector(':popover-open') !== null").await
     })
 }
@@ -186,8 +186,9 @@ fn on_a_phone_a_chart_stays_in_sight_over_the_form_and_the_note_is_visible() -> 
             .await?;
         ensure!(page.visible("#about p").await?, "the note is not in the folded form");
         page.click("#sheet > summary").await?;
-        page.eval::<()>(
-            "document.querySelector('[data-path=\"bus.slots\"]').scrollIntoView({ block: 'center' })",
+        page.js::<()>(
+            "document.querySelector('[data-path=\"bus.slots\"]').scrollIntoView({ block: 'center' }); return null;",
+            vec![],
         )
         .await?;
         page.until("(() => { const { top, bottom, height } = document.getElementById('mini').getBoundingClientRect(); return top >= -1 && bottom < 150 && height > 80; })()").await?;

@@ -2,6 +2,7 @@
 import { byId, element, fill } from "../../dom.js";
 import { selected } from "../../state/queries.js";
 import { swatch } from "../lines.js";
+import { axisNames } from "./axis_names.js";
 import { lookOf, scaleOf, unitOf } from "./axis_units.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -20,8 +21,10 @@ export function createAxes({ dispatch, now }) {
 
   /** @param {State} state */
   function entries(state) {
+    const names = axisNames(state);
     return Array.from({ length: selected(state)?.channels ?? 1 }, (_, axis) => {
       const { ink, dash } = lookOf(state, axis);
+      const name = names[axis] ?? "";
       const isShown = !state.hiddenAxes.includes(axis);
       const hasUnit = scaleOf(state, axis) !== null;
       const press = element(
@@ -31,11 +34,11 @@ export function createAxes({ dispatch, now }) {
           class: axis === state.axis ? "selected" : "",
           "data-axis": String(axis),
           "aria-pressed": String(isShown && hasUnit),
-          "aria-label": `Axis ${axis}`,
+          "aria-label": `Axis ${axis} ${name}`.trim(),
           title: hasUnit ? `${isShown ? "Hide" : "Show"} axis ${axis}` : `Axis ${axis} has no ${unitOf(state).unit}`,
         },
         swatch(ink, dash > 0),
-        ` ${axis}`,
+        ` ${axis} ${name}`.trimEnd(),
       );
       // A short dash is drawn as dots.
       if (dash === 2) /** @type {HTMLElement} */ (press.firstElementChild).style.borderTopStyle = "dotted";

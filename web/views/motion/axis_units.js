@@ -3,15 +3,20 @@
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./bands.js").Quantity} Quantity */
 
-/** Colors and dashes of the axes that are not selected: many axes stay distinct. */
-const INKS = ["--enable", "--wire", "--ink", "--reply"];
-const DASHES = [0, 6, 2, 10];
+/** Colors and dashes of the axes that are not selected. A dashed green line is the baseline. */
+const [SOLID, DASHED] = [
+  ["--enable", "--wire", "--ink", "--reply"],
+  ["--wire", "--ink", "--reply"],
+];
+const DASHES = [2, 10, 6, 18];
 
 /** The line of an axis. @param {State} state @param {number} axis */
 export function lookOf(state, axis) {
   // Without a plan there is only the actual curve.
   if (axis === state.axis) return { ink: visibleAxis(state) ? "--ideal" : "--actual", dash: 0 };
-  return { ink: INKS[axis % INKS.length], dash: DASHES[Math.floor(axis / INKS.length) % DASHES.length] };
+  if (axis < SOLID.length) return { ink: SOLID[axis], dash: 0 };
+  const index = axis - SOLID.length;
+  return { ink: DASHED[index % DASHED.length], dash: DASHES[Math.floor(index / DASHED.length) % DASHES.length] };
 }
 
 /** The derived values of an axis of the visible controller. @param {State} state @param {number} [axis] */

@@ -139,7 +139,5 @@ export function chartOf(state, data, quantity) {
 /** Why there is no chart of the acceleration. @param {MotionColumns} columns */
 function whyNoAcceleration({ has_ideal, speed_max, speed_min, actual_speed_max, actual_speed_min }) {
   const speeds = has_ideal ? [speed_min, speed_max] : [actual_speed_min, actual_speed_max];
-  return speeds.some((values) => values.some((value) => Math.abs(value) > 0))
-    ? "stepwise"
-    : "";
+  return speeds.some((values) => values.some((value) => Math.abs(value) > 0)) ? "stepwise" : "";
 }

@@ -1,35 +1,31 @@
-/** Handles at the corners of the speed curve: dragging one changes the ramp and the top speed. The number fields do the same by keys. */
+/** Handles at the corners of the speed curve: dragging one changes the ramp and the top speed. For keys there are the number fields. */
 import { element } from "../../dom.js";
 import { createLiveEdit } from "../../form/live_edit.js";
-import { convert } from "../../form/values.js";
-import { cornerOf, movedCorner } from "../../state/corners.js";
-import { get } from "../../state/paths.js";
-import { blockedBy, derivedAxis } from "../../state/queries.js";
+import { movedCorner } from "../../state/corners.js";
+import { isDrag } from "../../state/drag.js";
+import { blockedBy } from "../../state/queries.js";
 import { shown } from "../../state/time_window.js";
 import { valueAt } from "../../time/gestures.js";
-import { pixelOf } from "../../time/timeline.js";
+import { cycleAt, pixelOf, setCursor } from "../../time/timeline.js";
+import { cornerPlaces, editOf, moved } from "./corner_places.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("../../state/types.js").Plot} Plot */
+/** @typedef {import("./corner_places.js").Place} Place */
 /** @typedef {{min: number, max: number}} Range */
-/** @typedef {{path: string, move: any, rates: import("../../state/corners.js").Rates, corner: import("../../state/corners.js").Corner,
- *   start_s: number, end_s: number, sign: number, isLast: boolean}} Place  `isLast`: at the end of the plateau. */
-
-/** Axes with more moves have no handles. */
-const MAX_MOVES = 6;
-
-/** A value with the digits that a drag can mean. @param {number} value */
-const rounded = (value) => Number(value.toPrecision(3));
+/** @typedef {{x: number, y: number}} Point */
+/** @typedef {{range: Range, window: import("../../state/types.js").Span}} Axes  Of the chart. */
 
 /**
  * @param {HTMLCanvasElement} canvas  Of the speed.
  * @param {() => number} scale  Length of a step in the visible unit.
  * @param {import("../../state/types.js").Page} page
+ * @param {() => void} onRelease  The axes of the chart follow again.
  */
-export function createCornerHandles(canvas, scale, { dispatch, now }) {
+export function createCornerHandles(canvas, scale, { dispatch, now }, onRelease) {
   const layer = element("div", { class: "corners", "aria-hidden": "true" });
   canvas.after(layer);
-  const live = createLiveEdit(dispatch);
+  const live = createLiveEdit(layer, { dispatch, now });
   /** @type {HTMLElement[]} */
   const nodes = [];
   /** @type {Place[]} */
@@ -38,135 +34,107 @@ export function createCornerHandles(canvas, scale, { dispatch, now }) {
   let plot = null;
   /** @type {Range} */
   let range = { min: 0, max: 1 };
-  /** The dragged handle, and the range of the chart at its start, which stays. @type {{index: number, range: Range, place: Place} | null} */
+  /** The dragged handle: where it was pressed, the distance from its center, and the axes, which stay. @type {({node: HTMLElement, place: Place, press: PointerEvent, by: Point, isMoved: boolean} & Axes) | null} */
   let drag = null;
 
   /** @param {number} index */
   function createNode(index) {
     const node = element("div", { class: "corner", title: "Drag to change the ramp and the top speed" });
-    node.addEventListener("pointerdown", (event) => {
-      if (event.button !== 0 || !places[index]) return;
+    node.addEventListener("pointerdown", (press) => {
+      if (press.button !== 0 || !places[index] || !plot) return;
       // The time axis below must not move.
-      event.stopPropagation();
-      event.preventDefault();
-      node.setPointerCapture(event.pointerId);
-      drag = { index, range, place: places[index] };
+      press.stopPropagation();
+      press.preventDefault();
+      node.setPointerCapture(press.pointerId);
+      const [place, center, pointer] = [places[index], centerOf(places[index]), pointOf(press)];
+      const by = { x: pointer.x - center.x, y: pointer.y - center.y };
+      drag = { node, place, press, by, isMoved: false, range, window: shown(now()) };
     });
     node.addEventListener("pointermove", (event) => {
       if (!drag) return;
       event.stopPropagation();
-      follow(event);
+      drag.isMoved ||= isDrag(drag.press, event);
+      if (drag.isMoved) follow(event);
     });
-    for (const end of ["pointerup", "pointercancel"])
-      node.addEventListener(end, (event) => {
-        event.stopPropagation();
-        drag = null;
-        live.end();
-        render(now(), plot, range);
-      });
+    node.addEventListener("pointerup", (event) => {
+      event.stopPropagation();
+      // A click at a handle is a click at the chart.
+      if (drag && !drag.isMoved && plot) setCursor({ dispatch, now }, event, cycleAt(now(), plot, pointOf(event).x));
+    });
+    node.addEventListener("pointercancel", live.cancel);
+    node.addEventListener("lostpointercapture", () => {
+      const hasMoved = drag?.isMoved;
+      drag = null;
+      live.end();
+      if (hasMoved) onRelease();
+    });
     layer.append(node);
     return node;
   }
 
+  /** @param {PointerEvent} event @returns {Point} */
+  function pointOf({ clientX, clientY }) {
+    const { left, top } = canvas.getBoundingClientRect();
+    return { x: clientX - left, y: clientY - top };
+  }
+
   /** @param {PointerEvent} event */
-  function follow({ clientX, clientY }) {
+  function follow(event) {
     if (!drag || !plot) return;
-    const box = canvas.getBoundingClientRect();
+    const { x, y } = pointOf(event);
+    const { place, by, window } = drag;
+    const clock = now().result?.summary.clock_hz ?? 1;
+    const at = valueAt(window, plot, x - by.x) / clock;
+    const height = (y - by.y - plot.top) / (plot.bottom - plot.top);
+    const top = ((drag.range.max - height * (drag.range.max - drag.range.min)) / scale()) * place.sign;
+    const fields = movedCorner(place.move, place.rates, {
+      ramp_s: place.isLast ? place.end_s - at : at - place.start_s,
+      top,
+    });
+    if (!fields) return;
+    live.edit(() => {
+      const edit = editOf(place, fields, now());
+      if (edit) dispatch({ type: "edit", joins: true, moved: [], ...edit });
+    });
+    put(drag.node, centerOf(moved(place, fields, top)));
+  }
+
+  /** Where the handle of a corner is. @param {Place} place @returns {Point} */
+  function centerOf({ corner, start_s, end_s, sign, isLast }) {
+    const { left, right, top, bottom } = /** @type {Plot} */ (plot);
     const state = now();
     const clock = state.result?.summary.clock_hz ?? 1;
-    const { place, range: fixed } = drag;
-    const at = valueAt(shown(state), plot, clientX - box.left) / clock;
-    const height = (clientY - box.top - plot.top) / (plot.bottom - plot.top);
-    const top = ((fixed.max - height * (fixed.max - fixed.min)) / scale()) * place.sign;
-    const ramp_s = place.isLast ? place.end_s - at : at - place.start_s;
-    const fields = movedCorner(place.move, place.rates, { ramp_s, top });
-    if (!fields) return;
-    const value = changed(place, fields, state);
-    live.edit(() => dispatch({ type: "edit", path: place.path, value, joins: true }));
-    put(nodes[drag.index], clientX - box.left, clientY - box.top);
+    const { range: values, window } = drag ?? { range, window: shown(state) };
+    const share = (values.max - sign * corner.top * scale()) / (values.max - values.min);
+    const cycle = (isLast ? end_s - corner.ramp_s : start_s + corner.ramp_s) * clock;
+    return { x: pixelOf({ ...state, window }, { left, right }, cycle), y: top + share * (bottom - top) };
   }
 
-  /** @param {HTMLElement} node @param {number} x @param {number} y */
-  function put(node, x, y) {
+  /** @param {HTMLElement} node @param {Point} center */
+  function put(node, { x, y }) {
     node.style.left = `${x.toFixed(1)}px`;
     node.style.top = `${(canvas.offsetTop + y).toFixed(1)}px`;
+    node.hidden = !plot || x < plot.left - 1 || x > plot.right + 1;
   }
 
-  /** @param {State} state @param {Plot | null} area @param {Range} values  Of the vertical axis. */
-  function render(state, area, values) {
+  /** @param {State} state @param {Plot | null} [area] @param {Range} [values]  Of the vertical axis. */
+  function render(state, area = plot, values = range) {
     [plot, range] = [area, values];
     // Until the form is valid again the handles stay at the visible curve.
-    if (blockedBy(state) === null) places = placesOf(state);
-    const clock = state.result?.summary.clock_hz ?? 1;
+    if (blockedBy(state) === null) places = cornerPlaces(state);
     while (nodes.length < places.length) nodes.push(createNode(nodes.length));
+    // A text that is no number yet would not follow.
+    const isVisible = plot && Object.keys(state.drafts).length === 0 && !state.hiddenAxes.includes(state.axis);
     for (const [index, node] of nodes.entries()) {
       const place = places[index];
-      if (drag?.index === index) continue;
-      node.hidden = true;
-      if (!place || !plot) continue;
-      const { corner, start_s, end_s, sign, isLast } = place;
-      const x = pixelOf(state, plot, (isLast ? end_s - corner.ramp_s : start_s + corner.ramp_s) * clock);
-      const share = (range.max - sign * corner.top * scale()) / (range.max - range.min);
-      node.hidden = x < plot.left - 1 || x > plot.right + 1;
-      put(node, x, plot.top + share * (plot.bottom - plot.top));
+      if (drag?.isMoved && drag.node === node) continue;
+      if (isVisible && place?.axis === state.axis) put(node, centerOf(place));
+      else node.hidden = true;
     }
   }
   return {
     render,
-    /** The range of the chart while a handle is dragged; otherwise null. */
-    range: () => drag?.range ?? null,
-  };
-}
-
-/** The corners of the visible axis. @param {State} state @returns {Place[]} */
-function placesOf(state) {
-  const index = state.result?.controller ?? 0;
-  const base = `${index === 0 ? "source.motion" : `controllers[${index - 1}]`}.axes[${state.axis}]`;
-  const moves = get(state.scenario, `${base}.moves`);
-  const derived = derivedAxis(state, base);
-  if (!state.scenario.source?.motion || !moves || !derived || moves.length > MAX_MOVES) return [];
-  return moves.flatMap((/** @type {any} */ move, /** @type {number} */ at) => {
-    const { start_s, duration_s, steps } = derived.moves[at] ?? {};
-    const path = `${base}.moves[${at}]`;
-    const [kind] = Object.keys(move);
-    const inSteps = (/** @type {any} */ quantity) => quantity && Number(convert(quantity, "steps", path, state).steps);
-    const rates = {
-      steps: Math.abs(steps ?? 0),
-      start: inSteps(move[kind].start_speed),
-      max: inSteps(move[kind].max_speed),
-      acceleration: inSteps(move[kind].max_acceleration),
-      peak: moves.length === 1 ? derived.peak_speed_steps_s : undefined,
-    };
-    const { start_speed, end_speed, deceleration, max_deceleration } = move[kind];
-    // The corners of a move between two speeds, or of one that is cut, are elsewhere.
-    const hasStart = kind === "trapezoid" ? start_speed === null : start_speed;
-    const isBetween = end_speed || deceleration || max_deceleration || hasStart;
-    const corner = isBetween || moves[at + 1]?.retarget ? null : cornerOf(move, rates);
-    if (!corner) return [];
-    const place = { path, move, rates, corner, start_s, end_s: start_s + duration_s, sign: Math.sign(steps) };
-    // Without a plateau the corners coincide.
-    const isSingle = duration_s - 2 * corner.ramp_s < duration_s * 0.02;
-    return (isSingle ? [false] : [false, true]).map((isLast) => ({ ...place, isLast }));
-  });
-}
-
-/** The move with new fields, in the units of the old ones. @param {Place} place @param {any} fields @param {State} state */
-function changed({ move, path }, fields, state) {
-  const [kind] = Object.keys(move);
-  if ("duration_s" in fields) {
-    const duration_s = rounded(fields.duration_s);
-    return { [kind]: { ...move[kind], duration_s, ramp_s: Math.min(rounded(fields.ramp_s), duration_s / 2) } };
-  }
-  const inUnit = (/** @type {any} */ before, /** @type {number} */ steps) => {
-    const [unit] = Object.keys(before);
-    return { [unit]: rounded(convert({ steps }, unit, path, state)[unit]) };
-  };
-  const { max_speed, max_acceleration } = move[kind];
-  return {
-    [kind]: {
-      ...move[kind],
-      max_speed: inUnit(max_speed, fields.max),
-      max_acceleration: inUnit(max_acceleration, fields.acceleration),
-    },
+    /** The axes of the chart while a handle is dragged; otherwise null. @returns {Axes | null} */
+    axes: () => (drag?.isMoved ? drag : null),
   };
 }

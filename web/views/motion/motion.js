@@ -42,7 +42,10 @@ export function createMotion({ engine, dispatch, now }) {
     /** @type {HTMLCanvasElement} */ (byId("chart-speed")),
     () => unitOf(now()).scale,
     { dispatch, now },
+    () => refresh(now()),
   );
+  /** While a corner is dragged, the time axis stays. @param {State} state @returns {State} */
+  const frozen = (state) => ({ ...state, window: corners.axes()?.window ?? state.window });
   /** @type {import("./bands.js").MotionData | null} */
   let data = null;
   /** @type {Drawn[]} */
@@ -78,8 +81,9 @@ export function createMotion({ engine, dispatch, now }) {
   let [requested, later] = [0, 0];
   watch(stack, () => refresh(now()));
 
-  /** @param {State} state */
-  async function refresh(state) {
+  /** @param {State} current */
+  async function refresh(current) {
+    const state = frozen(current);
     requested = performance.now();
     plot = { left: GUTTER, right: Math.max(GUTTER + 1, stack.clientWidth - MARGIN) };
     if (!state.result || stack.clientWidth < 60) return;
@@ -91,8 +95,9 @@ export function createMotion({ engine, dispatch, now }) {
     paint(now());
   }
 
-  /** @param {State} state */
-  function paint(state) {
+  /** @param {State} current */
+  function paint(current) {
+    const state = frozen(current);
     if (!data || !state.result) return;
     const found = data;
     const quantities = quantitiesOf(state, found);
@@ -103,7 +108,7 @@ export function createMotion({ engine, dispatch, now }) {
       const canvas = /** @type {HTMLCanvasElement} */ (byId(`chart-${quantity}`));
       const { bands, others, caption, note, range, unit, chart } = drawn[index];
       setText(byId(`caption-${quantity}`), [`${caption}, ${unit}`, note].filter(Boolean).join(" · "));
-      if (quantity === "speed") Object.assign(chart.y, corners.range());
+      if (quantity === "speed") Object.assign(chart.y, corners.axes()?.range);
       const area = draw(canvas, { ...chart, series: chart.series.slice(others) });
       if (area) drawOutlines(canvas, area, { ...chart, series: chart.series.slice(0, others) });
       if (quantity === "speed") corners.render(state, area, chart.y);
@@ -181,6 +186,7 @@ export function createMotion({ engine, dispatch, now }) {
     }
     compare.render(state, before);
     axes.render(state, before);
+    if (before?.drafts !== state.drafts) corners.render(state);
     const isOtherCurve =
       before?.axis !== state.axis ||
       before?.result !== state.result ||
@@ -198,7 +204,7 @@ export function createMotion({ engine, dispatch, now }) {
       return refresh(state);
     // Another unit may have other axes.
     if (before?.unit !== state.unit) return refresh(state);
-    if (hasOverlayChanged(before, state)) paintCursor(state);
+    if (hasOverlayChanged(before, state)) paintCursor(frozen(state));
     return undefined;
   }
   return { render };

@@ -67,7 +67,7 @@ export function createChoice({ engine, dispatch, now }, fold) {
       .compute("with motor", "with_motor", json, motor.value, drive.value)
       .catch((error) => void (error instanceof Dropped || setText(about, errorMessage(error))));
     if (!text || JSON.stringify(now().scenario) !== json) return;
-    dispatch({ type: "edit", path: "", value: readJson(text) });
+    dispatch({ type: "edit", path: "", value: readJson(text), moved: [] });
     motor.value = drive.value = "";
     fold.open = false;
     describe();
