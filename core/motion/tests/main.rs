@@ -3,8 +3,11 @@
 #![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod curves;
 mod decimals;
+mod entries;
 mod fewest_entries;
+mod groups;
 mod klipper;
 mod smallest_tables;
 mod tick_ends;
