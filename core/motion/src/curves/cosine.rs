@@ -156,13 +156,18 @@ impl MirroredCurve for Cosine {
 /// Maximum steps of Newton's method; two or three are enough.
 const MAX_NEWTON_STEPS: u32 = 10;
 
-/// The x of 0..=pi with x - sin(x) = `level`.
-fn phase_at(level: f64) -> f64 {
-    // The inverse series is slightly low. x - sin(x) rises and is convex, so the first step of Newton's method passes the
-    // root, and the others fall toward it.
+/// Approximates [`phase_at`] by the inverse series.
+fn guess_phase(level: f64) -> f64 {
     let root = libm::cbrt(6.0 * level);
     let square = root * root;
-    let mut phase = root * (1.0 + square * (1.0 / 60.0 + square * (1.0 / 1400.0 + square / 25_200.0)));
+    root * (1.0 + square * (1.0 / 60.0 + square * (1.0 / 1400.0 + square / 25_200.0)))
+}
+
+/// The x of 0..=pi with x - sin(x) = `level`.
+fn phase_at(level: f64) -> f64 {
+    // The guess is slightly low. x - sin(x) rises and is convex, so the first step of Newton's method passes the root, and
+    // the others fall toward it.
+    let mut phase = guess_phase(level);
     for _ in 0..MAX_NEWTON_STEPS {
         let half = libm::sin(phase / 2.0);
         let correction = (phase.minus_its_sine() - level) / (2.0 * half * half);

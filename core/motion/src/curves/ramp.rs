@@ -143,11 +143,7 @@ impl Ramp {
         let guess = match self {
             _ if travel <= 0.0 => return 0.0,
             Self::Straight => return lesser(square_root(2.0 * travel), 1.0),
-            Self::Bezier => {
-                // One iteration of x^3 = travel/(1 - x/2).
-                let root = libm::cbrt(travel);
-                libm::cbrt(travel / (1.0 - root / 2.0))
-            }
+            Self::Bezier => guess_bezier(travel),
             Self::Sigmoid(curve) => curve.guess(travel),
             Self::Exponential(curve) => curve.guess(travel),
         };
@@ -220,6 +216,12 @@ impl Exponential {
         let remainder = travel * self.constants * self.part;
         (square_root(2.0 * remainder) + remainder / 3.0) / self.constants
     }
+}
+
+/// One iteration of x^3 = travel/(1 - x/2).
+fn guess_bezier(travel: f64) -> f64 {
+    let root = libm::cbrt(travel);
+    libm::cbrt(travel / (1.0 - root / 2.0))
 }
 
 /// e^z - 1 - z without cancellation.

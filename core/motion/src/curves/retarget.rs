@@ -155,3 +155,128 @@ impl Climb {
         (self.speed, self.q, self.acceleration) = (to, q, acceleration);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_xoshiro::{
+        Xoshiro256PlusPlus,
+        rand_core::{Rng, SeedableRng},
+    };
+
+    /// The largest q at speed `v` of a change up from (v0, q0) to w: with slopes between -1 and 1, and within both caps
+    /// unless it begins above them.
+    fn largest_q(limits: &MoveLimits, (v0, q0): (f64, f64), w: f64, v: f64) -> f64 {
+        let [rising, falling] =
+            [limits.acceleration, limits.deceleration].map(|limit| limit * limit / (2.0 * limits.jerk));
+        let caps = if v < 0.0 { (falling, rising - v) } else { (rising, falling + v) };
+        let bounds = [q0 + (v - v0), w - v, caps.0, caps.1];
+        bounds.into_iter().fold(f64::INFINITY, f64::min).max(q0 - (v - v0))
+    }
+
+    #[test]
+    fn a_change_of_speed_always_has_the_largest_acceleration() {
+        let mut noise = Xoshiro256PlusPlus::seed_from_u64(3);
+        let mut draw =
+            |from: f64, to: f64| from + (to - from) * (noise.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        for round in 0..3000 {
+            let [acceleration, deceleration] = [draw(1000.0, 20_000.0), draw(1000.0, 20_000.0)];
+            let jerk = draw(1e4, 1e6);
+            let limits = MoveLimits { speed: 5000.0, acceleration, deceleration, jerk };
+            let (speed, target) = (draw(-4000.0, 4000.0), draw(-4000.0, 4000.0));
+            let limit = acceleration.min(deceleration);
+            let from = State { position: 7.5, speed, acceleration: draw(-limit, limit) };
+            let reached = speed + from.acceleration * from.acceleration.abs() / (2.0 * jerk);
+            let sign = if target < reached { -1.0 } else { 1.0 };
+            let phases = to_speed(&limits, from, target);
+            // An acceleration the other way first falls to 0.
+            let other_s = if sign * from.acceleration < 0.0 { from.acceleration.abs() / jerk } else { 0.0 };
+            let turned = phases.state(other_s);
+            let (v0, q0) = (sign * turned.speed, turned.acceleration * turned.acceleration / (2.0 * jerk));
+            let mut before = 0.0;
+            for part in 1..=200 {
+                let t = other_s + (phases.duration_s() - other_s) * f64::from(part) / 200.0;
+                let State { speed, acceleration, .. } = phases.state(t);
+                let q = acceleration * acceleration / (2.0 * jerk);
+                let expected = largest_q(&limits, (v0, q0), sign * target, sign * speed);
+                assert!((q - expected).abs() < 1e-4, "{round}: {q} at {speed}, expected {expected}");
+                assert!(
+                    sign * acceleration >= -1e-6 * limit && sign * (speed - before) >= -1e-6 || part == 1
+                );
+                before = speed;
+            }
+            let end = phases.end();
+            assert!(
+                (end.speed - target).abs() < 1e-6 && end.acceleration.abs() < 1e-6 * limit,
+                "{round}: {end:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_position_is_reached_at_rest_and_mirrored_targets_take_as_long() {
+        let mut noise = Xoshiro256PlusPlus::seed_from_u64(4);
+        let mut draw =
+            |from: f64, to: f64| from + (to - from) * (noise.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        for round in 0..1000 {
+            let limits = MoveLimits {
+                speed: draw(500.0, 4000.0),
+                acceleration: draw(1000.0, 20_000.0),
+                deceleration: draw(1000.0, 20_000.0),
+                jerk: if round % 5 == 0 { f64::INFINITY } else { draw(1e4, 1e6) },
+            };
+            let from =
+                State { position: 0.25, speed: draw(-500.0, 500.0), acceleration: draw(-1000.0, 1000.0) };
+            let target = draw(-2000.0, 2000.0);
+            let phases = to_position(&limits, from, target);
+            assert_eq!(
+                phases.end(),
+                State { position: target, speed: 0.0, acceleration: phases.end().acceleration }
+            );
+            let mirrored =
+                State { position: -from.position, speed: -from.speed, acceleration: -from.acceleration };
+            let other_s = to_position(&limits, mirrored, -target).duration_s();
+            assert!(
+                (phases.duration_s() - other_s).abs() < 1e-9,
+                "{round}: {} {other_s}",
+                phases.duration_s()
+            );
+            // The curve is continuous, keeps the maximum speed, and passes no phase twice.
+            let mut before = from.position;
+            for part in 1..=500 {
+                let dt = phases.duration_s() / 500.0;
+                let State { position, speed, .. } = phases.state(dt * f64::from(part));
+                assert!(speed.abs() <= limits.speed * (1.0 + 1e-9), "{round}: {speed}");
+                assert!(
+                    (position - before).abs() <= limits.speed * dt + 1e-6,
+                    "{round}: {before} {position}"
+                );
+                before = position;
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_limit_of_the_jerk_the_speed_falls_by_the_deceleration_and_rises_by_the_acceleration() {
+        let limits =
+            MoveLimits { speed: 4000.0, acceleration: 1000.0, deceleration: 2000.0, jerk: f64::INFINITY };
+        // Speed and target; duration and travel.
+        let rows = [
+            (500.0, -300.0, 0.25 + 0.3, 62.5 - 45.0),
+            (-500.0, 300.0, 0.25 + 0.3, 45.0 - 62.5),
+            (500.0, 800.0, 0.3, 195.0),
+            (-800.0, -500.0, 0.15, -97.5),
+            (500.0, 0.0, 0.25, 62.5),
+            (0.0, -500.0, 0.5, -125.0),
+            (500.0, 500.0, 0.0, 0.0),
+        ];
+        for (speed, target, duration_s, travel) in rows {
+            let from = State { position: 10.0, speed, acceleration: 123.0 };
+            let phases = to_speed(&limits, from, target);
+            let found = (phases.duration_s(), phases.end().position - 10.0, phases.end().speed);
+            let expected = (duration_s, travel, target);
+            let off = [found.0 - expected.0, found.1 - expected.1, found.2 - expected.2];
+            assert!(off.iter().all(|off| off.abs() < 1e-9), "{speed} to {target}: {found:?}, {expected:?}");
+        }
+    }
+}

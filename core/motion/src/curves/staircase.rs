@@ -401,4 +401,14 @@ mod tests {
         assert_eq!(made.peaks().speed, 1086.0);
         assert_eq!(Staircase::new(500, table(1.0), 1100, ShortMove::Document, 4), Err(5));
     }
+
+    #[test]
+    fn each_row_adds_two_roundings_to_the_maximum_error() {
+        for (steps, rows) in [(240, 4), (500, 4), (59, 0)] {
+            let made = staircase(steps, 1.0, 1100, ShortMove::Reverse);
+            assert_eq!(made.ramp_rows(), rows, "{steps}");
+            let roundings = made.max_error_s() / made.duration_s() / ROUNDING;
+            assert!((roundings - (64 + 2 * (rows + 1)) as f64).abs() < 1e-9, "{steps}: {roundings}");
+        }
+    }
 }

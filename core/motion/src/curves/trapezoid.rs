@@ -209,4 +209,16 @@ mod tests {
             assert!((mirrored - s).abs() < 1e-9, "{t}: {s} {mirrored}");
         }
     }
+
+    #[test]
+    fn a_move_that_starts_at_its_top_speed_has_no_acceleration() {
+        let flat = Trapezoid::new(500, 1000.0, 1000.0, 8000.0);
+        assert_eq!(flat.peaks(), Peaks { speed: 1000.0, ..Peaks::default() });
+        // The acceleration jumps once per end of a ramp, at the tip of a triangle twice as far.
+        for (steps, speed, jump) in [(10_000, 5000.0, 8000.0), (2500, 4_472.135_955, 16_000.0)] {
+            let peaks = Trapezoid::new(steps, 0.0, 5000.0, 8000.0).peaks();
+            assert!((peaks.speed - speed).abs() < 1e-6, "{peaks:?}");
+            assert_eq!((peaks.acceleration, peaks.acceleration_jump), (8000.0, jump), "{steps}");
+        }
+    }
 }

@@ -219,6 +219,7 @@ pub(crate) fn course(joints: &[Joint]) -> Result<Course, Misfit> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::curves::phases::State;
 
     #[test]
     fn two_axes_pass_three_points_together() {
@@ -247,5 +248,65 @@ mod tests {
                 near(&[curve.state(at_s).position], &[*position], 1e-7);
             }
         }
+    }
+
+    fn joint(positions: &[f64], given: &[Option<f64>]) -> Joint {
+        let limits = MoveLimits { speed: 1000.0, acceleration: 10_000.0, deceleration: 8000.0, jerk: 2e5 };
+        Joint { positions: positions.into(), given: given.into(), limits }
+    }
+
+    #[test]
+    fn given_speeds_are_kept_or_refused_with_their_numbers() {
+        let lead = joint(&[0.0, 300.0, 600.0], &[None, Some(700.0), None]);
+        let both = course(&[lead.clone(), joint(&[0.0, -150.0, -300.0], &[None; 3])]).expect("it fits");
+        assert_eq!(both.speeds[0], [0.0, 700.0, 0.0]);
+        // Twice the mean speed, because the axis stands at the other ends of both sections.
+        let mean = [0, 1].map(|section| 2.0 * 150.0 / both.durations_s[section]);
+        assert!((both.speeds[1][1] + mean[0].min(mean[1])).abs() < 1.0, "{:?} {mean:?}", both.speeds);
+        let stop = course(&[joint(&[0.0, 300.0, 600.0], &[None, Some(0.0), None])]).expect("it fits");
+        let limits = lead.limits;
+        let alone_s = limits.duration_s(300.0, 0.0, 0.0).expect("it fits");
+        assert_eq!(stop.durations_s, [alone_s; 2]);
+
+        // 10 steps are too short to reach 700 steps/s.
+        let short = course(&[joint(&[0.0, 10.0, 600.0], &[None, Some(700.0), None])]).map(|_| ());
+        let needed = limits.ramp_steps(0.0, 700.0);
+        let kind = MisfitKind::TooShort { steps: 10.0, needed, from: 0.0, to: 700.0 };
+        assert_eq!(short, Err(Misfit { axis: 0, section: 1, kind }));
+        // The first axis takes so long that the second one could not keep its speeds.
+        let slow = joint(&[0.0, 1.0, 2000.0, 2001.0], &[None; 4]);
+        let fast = joint(&[0.0, 300.0, 400.0, 700.0], &[None, Some(800.0), Some(800.0), None]);
+        let Err(Misfit { axis: 1, section: 2, kind: MisfitKind::TooSlow { duration_s, max_s, from, to } }) =
+            course(&[slow, fast]).map(|_| ())
+        else {
+            panic!("the section is too slow");
+        };
+        assert_eq!((max_s, from, to), (0.125, 800.0, 800.0));
+        assert!(duration_s > 1.9, "{duration_s}");
+    }
+
+    #[test]
+    fn an_axis_that_rests_has_no_distance_in_the_section() {
+        let axes =
+            [joint(&[5.0, 305.0, 305.0, 100.0], &[None; 4]), joint(&[0.0, 10.0, 200.0, 400.0], &[None; 4])];
+        let course = course(&axes).expect("it fits");
+        assert_eq!(course.speeds[0], [0.0; 4]);
+        let [first_s, second_s, _] = course.durations_s[..] else { panic!("three sections") };
+        for part in 0..=10 {
+            let state = course.curves[0].state(first_s + second_s * f64::from(part) / 10.0);
+            assert!((state.position - 305.0).abs() < 1e-9 && state.speed.abs() < 1e-6, "{state:?}");
+        }
+        let total_s: f64 = course.durations_s.iter().sum();
+        for (curve, end) in course.curves.iter().zip([100.0, 400.0]) {
+            assert!((curve.duration_s() - total_s).abs() < 1e-12 && curve.end().position == end);
+        }
+        // No axis exceeds its limits, and the second one passes its points without stopping.
+        for curve in &course.curves {
+            for part in 0..=2000 {
+                let State { speed, acceleration, .. } = curve.state(total_s * f64::from(part) / 2000.0);
+                assert!(speed.abs() <= 1000.0 + 1e-6 && acceleration.abs() <= 10_000.0 + 1e-3);
+            }
+        }
+        assert!(course.speeds[1][1] > 0.0 && course.speeds[1][2] > 0.0, "{:?}", course.speeds);
     }
 }

@@ -407,6 +407,15 @@ mod tests {
     }
 
     #[test]
+    fn a_quick_entry_may_have_the_steepest_add() {
+        // Intervals of 10 and 100 cycles, and the reverse.
+        for due in [[10, 110], [100, 110]] {
+            let made = compressed_quickly(right(&due), Tolerance::of(Cycles(0)), EntryFormat::TICKS, PULSE);
+            assert_eq!(made.map(|made| made.list.segments.len()), Ok(1), "{due:?}");
+        }
+    }
+
+    #[test]
     fn a_change_of_direction_and_a_long_pause_end_an_entry() {
         let mut due: Vec<ScheduledStep> = right(&[10, 20, 30]);
         due.extend([40, 50, 1 << 40].map(|cycle| ScheduledStep { cycle, right: false }));

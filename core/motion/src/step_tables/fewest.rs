@@ -245,7 +245,7 @@ impl Section {
             max = max.min((far - 2 * n * (window.low - from)).div_euclid(bend));
         }
         // With an even count every second add has an integer interval.
-        if n % 2 == 0 && (min - odd).rem_euclid(2) == 1 { min < max } else { min <= max }
+        if n % 2 == 0 && min.rem_euclid(2) != odd { min < max } else { min <= max }
     }
 
     /// The adds of `n` steps whose first and last intervals are in range.
@@ -553,5 +553,26 @@ mod tests {
             let entries = section.fewest_entries(is_cut, &mut 1_000_000).unwrap();
             assert_eq!(entries.iter().map(|entry| entry.count).collect::<Vec<_>>(), [10], "{is_cut}");
         }
+    }
+
+    /// Whether the work is enough decides how a list is searched, so its entries depend on every unit.
+    #[test]
+    fn counts_the_work_of_a_search() {
+        // About every 100 cycles, slower from step to step, with windows of 1, 9 and 200 times, and a reversal.
+        let needed = [0, 8, 199].map(|width| {
+            let window = |n: u64| {
+                let due = 100 * n + n * n / 2;
+                (Window { due_cycle: due, low: due, high: due + width }, n <= 20)
+            };
+            let windows: Vec<(Window, bool)> = (1..=30).map(window).collect();
+            let section = Section::new(EntryFormat::TICKS, 1, 0, &windows);
+            let mut left = 100_000_000;
+            assert!(section.fewest_entries(false, &mut left).is_some(), "{width}");
+            let needed = 100_000_000 - left;
+            assert!(section.fewest_entries(false, &mut needed.clone()).is_some(), "{width}");
+            assert_eq!(section.fewest_entries(false, &mut (needed - 1)), None, "{width}");
+            needed
+        });
+        assert_eq!(needed, [221, 981, 101_302]);
     }
 }

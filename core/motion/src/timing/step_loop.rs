@@ -114,3 +114,63 @@ impl Iterator for MoveSteps<'_> {
         Some((self.start.cycles() + cycles, ScheduledStep { cycle, right: self.right }))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::moves::{
+        Cosine, CosineMethod, JerkLimited, Move, Points, RampShape, Ramps, Sine, SineSegments, Staircase,
+        Trapezoid, TrapezoidMethod,
+    };
+    use crate::{mechanics::Distance, plan_move};
+    use core::cell::Cell;
+
+    /// Deciding in 106 bits takes hundreds of times as long, so an unnecessarily large maximum error costs time.
+    #[test]
+    fn an_f64_decides_almost_every_step() {
+        // A prime number of steps and odd times avoid ties by construction.
+        let distance = || Distance::Steps(2999.0);
+        let (duration_s, ramp_s) = (0.412_345_671, 0.171_234_567);
+        let ramps = |shape| {
+            Move::Ramps(Ramps { distance: distance(), duration_s, ramp_s, shape, ..Ramps::default() })
+        };
+        let trapezoid =
+            |method| Move::Trapezoid(Trapezoid { distance: distance(), method, ..Trapezoid::default() });
+        let cosine = |method| {
+            Move::Cosine(Cosine { distance: distance(), duration_s, ramp_s, method, ..Cosine::default() })
+        };
+        let (amplitude, period_s) = (Distance::Steps(499.0), 0.312_345_671);
+        let moves = [
+            trapezoid(TrapezoidMethod::Exact),
+            trapezoid(TrapezoidMethod::Table),
+            Move::Staircase(Staircase { distance: distance(), ..Staircase::default() }),
+            cosine(CosineMethod::Exact),
+            cosine(CosineMethod::Sliced),
+            ramps(RampShape::Sigmoid),
+            ramps(RampShape::Bezier),
+            ramps(RampShape::Straight),
+            ramps(RampShape::Exponential),
+            Move::Sine(Sine { amplitude, period_s, periods: 2 }),
+            Move::SineSegments(SineSegments { period_s, periods: 2, ..SineSegments::default() }),
+            Move::JerkLimited(JerkLimited { distance: distance(), ..JerkLimited::default() }),
+            Move::Points(Points::default()),
+        ];
+        for given in moves {
+            let (plan, decisions) = (plan_move(&given, "x").expect("a valid move"), Cell::new(0));
+            let (profile, counter) = (&plan.moves()[0].profile, &decisions);
+            let mut steps = MoveSteps::new(profile.schedule(), CycleTime::default(), 15_999_989);
+            let is_due_before = steps.is_due_before;
+            steps.is_due_before = alloc::boxed::Box::new(move |k, since| {
+                counter.set(counter.get() + 1);
+                is_due_before(k, since)
+            });
+            let count = steps.count();
+            assert_eq!(count as u64, profile.step_count());
+            assert!(
+                decisions.get() * 100 <= count,
+                "{} decisions for {count} steps of {given:?}",
+                decisions.get()
+            );
+        }
+    }
+}

@@ -8,6 +8,7 @@ use crate::device::{Device, Faults, Framing, latches::Timing};
 use crate::protocol::{Reason, State};
 use crate::signal::{Event, Levels, MAX_CHANNELS, Sink};
 use crate::units::Instant;
+use core::ops::BitOr;
 use stepscope_registers as map;
 
 const _: () = assert!(map::position::REGISTER.count as usize == MAX_CHANNELS);
@@ -133,12 +134,14 @@ impl Device {
         };
         let status = self.executor.status(self.last_cycle(), expected_seq);
         let pending = self.latches.timing != Timing::of(&self.latches.config);
-        STATE.insert(status.state as u32)
-            | FREE.insert(status.free.into())
-            | EXPECTED_SEQ.insert(expected_seq.into())
-            | MOVING.insert(self.executor.sequencer.is_moving().into())
-            | EN.insert((self.executor.transceiver.levels() & Levels::EN != 0).into())
-            | PENDING.insert(pending.into())
+        with_fields([
+            STATE.insert(status.state as u32),
+            FREE.insert(status.free.into()),
+            EXPECTED_SEQ.insert(expected_seq.into()),
+            MOVING.insert(self.executor.sequencer.is_moving().into()),
+            EN.insert((self.executor.transceiver.levels() & Levels::EN != 0).into()),
+            PENDING.insert(pending.into()),
+        ])
     }
 }
 
@@ -152,11 +155,18 @@ fn capabilities(config: &Config) -> u32 {
         Protocol::Raw => map::capabilities::PROTOCOL_RAW,
         Protocol::Framed => map::capabilities::PROTOCOL_FRAMED,
     };
-    VERSION.insert(map::capabilities::VERSION_1)
-        | CHANNELS.insert(config.channels().into())
-        | QUEUE_DEPTH.insert(config.queue_depth().into())
-        | DIR_LINE.insert(dir_line)
-        | PROTOCOL.insert(protocol)
+    with_fields([
+        VERSION.insert(map::capabilities::VERSION_1),
+        CHANNELS.insert(config.channels().into()),
+        QUEUE_DEPTH.insert(config.queue_depth().into()),
+        DIR_LINE.insert(dir_line),
+        PROTOCOL.insert(protocol),
+    ])
+}
+
+/// The register with these fields, each at its position.
+fn with_fields<const COUNT: usize>(fields: [u32; COUNT]) -> u32 {
+    fields.into_iter().fold(0, u32::bitor)
 }
 
 #[cfg(test)]

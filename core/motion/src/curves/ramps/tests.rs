@@ -37,6 +37,23 @@ fn top_speeds_follow_from_the_area() {
 }
 
 #[test]
+fn sharper_shapes_have_more_breakpoints() {
+    // 64 parts per ramp, and once more per 8 of the range or of the time constants; the middle belongs to both ramps.
+    let rows = [
+        (Ramp::Straight, 127),
+        (Ramp::Bezier, 127),
+        (Ramp::sigmoid(6.0), 127),
+        (Ramp::sigmoid(8.0), 255),
+        (Ramp::sigmoid(20.0), 383),
+        (Ramp::exponential(4.0), 127),
+        (Ramp::exponential(16.0), 383),
+    ];
+    for (ramp, expected) in rows {
+        assert_eq!(Ramps::new(3200, 0.4, 0.2, ramp).breakpoints_s().len(), expected, "{ramp:?}");
+    }
+}
+
+#[test]
 fn ends_exactly_with_mirrored_halves_and_no_reversal() {
     for ramp in shapes() {
         for &(steps, duration_s, ramp_s) in MOVES {

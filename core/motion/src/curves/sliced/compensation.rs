@@ -99,23 +99,20 @@ impl UncompensatedSlices {
         let (mut starts_s, mut exact_starts_s, mut sums) = (Vec::new(), Vec::new(), Vec::new());
         let (mut lost_s, mut lost_steps, mut sum, mut top_rate) = (0.0, 0, 0, 0.0);
         for (index, count) in counts.iter().enumerate() {
-            let is_shortened = self.plateau.contains(&index) && *count < plateau_steps;
-            let is_removed = is_shortened && *count == 0;
-            if !is_removed {
+            let in_plateau = self.plateau.contains(&index);
+            let missing = if in_plateau { plateau_steps - count } else { 0 };
+            if !in_plateau || *count > 0 {
                 let steps_at_top = F106::from(index as u64 * plateau_steps - lost_steps);
                 starts_s.push(index as f64 * self.slice_s - lost_s);
                 exact_starts_s.push(exact_slice_s * steps_at_top / divisor);
                 sums.push(sum as u32);
             }
-            if is_shortened {
-                lost_s += self.slice_s * ((plateau_steps - count) as f64 / plateau_steps as f64);
-                lost_steps += plateau_steps - count;
-            }
+            lost_s += self.slice_s * (missing as f64 / plateau_steps as f64);
+            lost_steps += missing;
             if *count > 0 {
                 // A shortened slice has the plateau's rate. Steps are rounded down, so no rate exceeds the top speed.
                 let length_s = libm::fmin(exact.duration_s() - index as f64 * self.slice_s, self.slice_s);
-                let steps = if is_shortened { plateau_steps } else { *count };
-                top_rate = greater(top_rate, libm::fmin(steps as f64 / length_s, top_speed));
+                top_rate = greater(top_rate, libm::fmin((count + missing) as f64 / length_s, top_speed));
             }
             sum += count;
         }

@@ -238,3 +238,11 @@ fn removes_excess_steps_from_the_plateaus_end_then_from_the_tail() {
         }
     }
 }
+
+#[test]
+fn each_slice_adds_four_roundings_to_the_maximum_error() {
+    let curve = sliced(6400, 0.4, 0.1);
+    let roundings = curve.max_error_s() / curve.duration_s() / ROUNDING;
+    // 394 slices have 395 starts and ends.
+    assert!((roundings - (64.0 + 4.0 * 395.0)).abs() < 1e-9, "{roundings}");
+}
