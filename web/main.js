@@ -22,6 +22,7 @@ import { createLink } from "./shell/link.js";
 import { createNotices } from "./shell/notices.js";
 import { cacheOffline } from "./shell/offline.js";
 import { createPanes } from "./shell/panes.js";
+import { dropDown } from "./shell/popover.js";
 import { createRunner } from "./shell/runner.js";
 import { createSavedExperiments } from "./shell/saved_experiments.js";
 import { offerNewer, savedWork } from "./shell/saved_work.js";
@@ -36,6 +37,7 @@ import {
 import { createTabs } from "./shell/tabs.js";
 import { createTheme } from "./shell/theme.js";
 import { createStart } from "./start/start.js";
+import { offerStarters } from "./start/starters.js";
 import { errorMessage } from "./state/error_message.js";
 import { initial } from "./state/initial.js";
 import { blockedBy, isStale } from "./state/queries.js";
@@ -158,12 +160,18 @@ const runner = createRunner({
 
 async function start() {
   createTheme();
+  dropDown("more", "more-panel");
   createCard();
   if (typeof WebAssembly !== "object") {
     byId("no-wasm").hidden = false;
     byId("status").textContent = "No engine";
     return;
   }
+  const page = { engine, dispatch, now: () => state };
+  /** @type {import("./start/opening.js").Page} */
+  const gallery = { presets: [], problemText, ...page };
+  // Before the engine arrives, since the cards must not move the page.
+  offerStarters(gallery);
   const [fallback, presets, drivers, schema] = await Promise.all([
     engine.request("default_scenario"),
     engine.request("presets"),
@@ -176,7 +184,7 @@ async function start() {
   const version = byId("version").textContent ?? "";
   const { saved, lastValid } = await savedWork(engine, fallback, version);
   state = saved;
-  const page = { engine, dispatch, now: () => state };
+  gallery.presets = presets;
   // Saving long histories is too slow for every keystroke.
   window.addEventListener("pagehide", () => saveHistory(version, state));
   // Enter in a field must not submit the form.
@@ -200,7 +208,7 @@ async function start() {
     ),
     createLazyPopover("export", "export-panel", (popover) => exportsOf(page, popover), "export-status"),
     createSavedExperiments({ newExperiment: fallback, problemText, ...page }),
-    createStart({ presets, problemText, ...page }),
+    createStart(gallery),
     link,
   ];
   createKeys(loadKeys);

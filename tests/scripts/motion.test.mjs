@@ -5,7 +5,7 @@ import { setSchema } from "../../web/form/schema.js";
 import { tapped } from "../../web/time/timeline.js";
 import { axisNames } from "../../web/views/motion/axis_names.js";
 import { lookOf, otherAxes, scaleOf, unitFor, unitOf, unitsOf } from "../../web/views/motion/axis_units.js";
-import { comparedRows } from "../../web/views/motion/compared_rows.js";
+import { comparedRows, stretched } from "../../web/views/motion/compared_rows.js";
 
 const wheel = { step_mm: 0.01, step_deg: 0.1, unit: "mm" };
 const screw = { step_mm: 0.02, step_deg: 0.1, unit: "steps" };
@@ -78,14 +78,39 @@ test("the legend names what differs between the axes", () => {
   assert.deepEqual(axisNames({ result: null, scenario: { source: { packets: {} } } }), []);
 });
 
+const figure = (name, unit, before, after) => ({
+  name,
+  unit,
+  before,
+  after,
+  change: before === null || after === null ? null : after - before,
+});
+
+test("ramps are compared at equal duration: speeds and accelerations are those of the stretched motion", () => {
+  const figures = stretched([
+    figure("duration", "seconds", 0.4, 0.5),
+    figure("peak speed", "speed", 8000, 8000),
+    figure("jump of speed", "speed", null, 100),
+    figure("peak acceleration", "acceleration", 2000, null),
+    figure("RMS lag", "length", 0.5, 0.25),
+    figure("THD, speed", "ratio", 0.01, 0.02),
+  ]);
+  assert.deepEqual(comparedRows(figures, null, "mm"), [
+    ["duration", "400 ms", "400 ms", "equal"],
+    ["peak speed", "8\u202f000 mm/s", "10\u202f000 mm/s", "+2\u202f000 mm/s (+25 %)"],
+    ["jump of speed", "none", "125 mm/s", "–"],
+    ["peak acceleration", "2\u202f000 mm/s²", "none (speed jumps)", "–"],
+  ]);
+  // The duration of a division is the same although its last digit differs.
+  const [duration, acceleration] = stretched([
+    figure("duration", "seconds", 0.3, 0.7),
+    figure("peak acceleration", "acceleration", 100, 100),
+  ]);
+  assert.equal(duration.change, 0);
+  assert.ok(Math.abs(acceleration.after - (100 * 49) / 9) < 1e-9);
+});
+
 test("a comparison says what changes, and what is undefined", () => {
-  const figure = (name, unit, before, after) => ({
-    name,
-    unit,
-    before,
-    after,
-    change: before === null || after === null ? null : after - before,
-  });
   const rows = comparedRows(
     [
       figure("duration", "seconds", 0.4, 0.5),
@@ -103,7 +128,7 @@ test("a comparison says what changes, and what is undefined", () => {
     ["duration", "400 ms", "500 ms", "+100 ms (+25 %)"],
     ["peak speed", "8\u202f000 mm/s", "8\u202f000 mm/s", "equal"],
     ["jump of speed", "none", "100 mm/s", "–"],
-    ["peak acceleration", "2\u202f000 mm/s²", "undefined", "–"],
+    ["peak acceleration", "2\u202f000 mm/s²", "none (speed jumps)", "–"],
     ["RMS lag", "0.5 mm", "0.25 mm", "−0.25 mm (−50 %)"],
     ["THD, speed", "1 %", "2 %", "+100 %"],
     ["lost steps", "0", "4", "+4"],

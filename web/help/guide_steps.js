@@ -40,7 +40,7 @@ export const STEPS = [
   {
     title: "Share it",
     at: "#share",
-    text: "The link contains the whole experiment. It reproduces the same edges, and the digest proves it. The ? button on the right shows the keys and the help.",
+    text: "The link contains the whole experiment. It reproduces the same edges, and the digest proves it. The menu on the right has the keys and the help.",
   },
 ];
 
@@ -150,7 +150,7 @@ function createGuide({ dispatch, now }) {
     mark(null);
     current = -1;
     panel.hidden = true;
-    byId("guide-start").focus();
+    byId("more").focus();
   }
 
   return { go };

@@ -21,6 +21,10 @@ export function createKeys(load) {
   };
   byId("help").addEventListener("click", open);
   byId("keys-close").addEventListener("click", () => dialog.close());
+  // The button that opened it is in a closed menu.
+  dialog.addEventListener("close", () => {
+    if (document.activeElement === document.body) byId("more").focus();
+  });
   // A click outside the content has the dialog as its target.
   dialog.addEventListener("click", (event) => {
     if (event.target === dialog) dialog.close();

@@ -11,9 +11,9 @@ const MIN_PX = 260;
 /**
  * @param {string} button  Id of the button that opens it.
  * @param {string} panel   Id of the panel, an element with `popover`.
- * @param {() => void} onOpen  Called when it is about to open.
+ * @param {() => void} [onOpen]  Called when it is about to open.
  */
-export function dropDown(button, panel, onOpen) {
+export function dropDown(button, panel, onOpen = () => {}) {
   const opener = /** @type {HTMLButtonElement} */ (byId(button));
   const box = byId(panel);
   opener.popoverTargetElement = box;

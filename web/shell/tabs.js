@@ -22,8 +22,14 @@ export function createTabs({ dispatch }) {
   const sheet = /** @type {HTMLDetailsElement} */ (byId("sheet"));
   const fold = () => {
     sheet.open = !narrow.matches;
-    if (narrow.matches) byId("views").after(byId("about"));
-    else byId("derived").before(byId("about"));
+    // The hint is in the footer, which stays in sight.
+    if (narrow.matches) {
+      byId("views").after(byId("about"));
+      byId("status").before(byId("field-hint"));
+    } else {
+      byId("derived").before(byId("about"));
+      byId("sheet-scroll").after(byId("field-hint"));
+    }
   };
   narrow.addEventListener("change", fold);
   fold();

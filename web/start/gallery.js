@@ -41,7 +41,7 @@ export function createGallery(page, dialog) {
   search.addEventListener("keydown", (event) => {
     if (event.key !== "Enter") return;
     event.preventDefault();
-    /** @type {HTMLElement | null} */ (list.querySelector("button"))?.click();
+    if (search.value.trim()) /** @type {HTMLElement | null} */ (list.querySelector("button"))?.click();
   });
 
   /** @param {Entry} entry */

@@ -16,7 +16,15 @@ export async function reveal({ dispatch, now }, view) {
   if (matchMedia("(max-width: 899px)").matches) {
     /** @type {HTMLDetailsElement} */ (byId("sheet")).open = false;
     scrollTo(0, 0);
-  } else if (await awaitResult({ now })) byId(`view-${view}`).scrollIntoView({ block: "nearest" });
+  } else if (await awaitResult({ now })) {
+    // Views that load, such as the spectrum, have their height once they are drawn.
+    await new Promise((drawn) => {
+      const { dataset } = document.documentElement;
+      const check = () => (dataset.state === "busy" ? requestAnimationFrame(check) : drawn(null));
+      check();
+    });
+    byId(`view-${view}`).scrollIntoView({ block: "nearest" });
+  }
 }
 
 /** Opens a preset in its view, or in another one. @param {Page} page @param {import("../state/types.js").Preset} preset @param {string} [view]  Part `v` of a link. */

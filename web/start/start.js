@@ -1,6 +1,5 @@
-/** The gallery (gallery.js), which loads on demand, and the starter cards of a first visit. */
+/** The gallery (gallery.js), which loads on demand. */
 import { byId } from "../dom.js";
-import { offerStarters } from "./starters.js";
 
 /** @param {import("./opening.js").Page} page */
 export function createStart(page) {
@@ -24,7 +23,6 @@ export function createStart(page) {
   dialog.addEventListener("click", (event) => {
     if (event.target === dialog) dialog.close();
   });
-  offerStarters(page);
   /** @param {import("../state/types.js").State} state */
   const render = ({ opened }) => {
     if (opened > 0) byId("welcome").hidden = true;

@@ -49,22 +49,23 @@ function openNamed(page, name, view) {
   if (preset) openPreset(page, preset, view);
 }
 
-/** Puts the focus on a field of the form, once the form shows the scenario. @param {string} selector */
+/** Puts the focus on a field of the form, once the form shows the scenario. On a narrow screen, the form is folded above the view. @param {string} selector */
 function focusField(selector) {
   requestAnimationFrame(() => {
+    if (!(/** @type {HTMLDetailsElement} */ (byId("sheet")).open)) return byId("views").focus({ preventScroll: true });
     const field = /** @type {HTMLElement | null} */ (byId("fields").querySelector(selector));
     for (let at = field?.parentElement; at; at = at.parentElement) if (at instanceof HTMLDetailsElement) at.open = true;
     field?.scrollIntoView({ block: "center" });
-    field?.focus();
+    return field?.focus();
   });
 }
 
-/** The cards. @param {Page} page @param {() => void} close  Called before a card opens its place. */
+/** The cards. @param {Page} page @param {() => void} close  Called when a card is clicked. */
 export function starterCards(page, close) {
   return STARTERS.map(({ title, text, run }) => {
     const card = element(
       "button",
-      { type: "button", class: "card" },
+      { type: "button", class: "card", title: text },
       element("b", {}, title),
       element("span", {}, text),
     );
@@ -81,8 +82,7 @@ export function offerStarters(page) {
   const welcome = byId("welcome");
   const isNew = isFirstVisit({ guided: loadGuided(), saved: loadScenario() !== null, fragment: location.hash });
   if (!isNew) return;
-  const tagline = document.querySelector(".brand p")?.textContent ?? "";
-  fill(byId("welcome-cards"), element("p", { class: "tagline" }, tagline), ...starterCards(page, close));
+  fill(byId("welcome-cards"), ...starterCards(page, close));
   welcome.hidden = false;
   byId("welcome-start").addEventListener("click", () => byId("guide-start").click());
   byId("welcome-never").addEventListener("click", () => {

@@ -8,6 +8,7 @@
  * @property {string} text   One line about it.
  * @property {string} task   Its group.
  * @property {string | null} paper
+ * @property {string} words  More text that the search finds.
  * @property {Preset} [preset]
  * @property {import("./types.js").Scenario} [saved]  A scenario that the user saved.
  *
@@ -18,6 +19,7 @@
 export const ALL = "All";
 export const PAPERS = "Papers";
 
+const RECORDING_WORDS = "capture recording logic analyzer VCD sigrok CSV";
 /** @type {Entry[]} */
 const RECORDINGS = [
   {
@@ -26,6 +28,7 @@ const RECORDINGS = [
     text: "Opens the import dialog: recorded pulses, compared with their plan.",
     task: "Recordings",
     paper: null,
+    words: RECORDING_WORDS,
   },
   {
     id: "recorded-late-packet",
@@ -33,11 +36,18 @@ const RECORDINGS = [
     text: "Opens the import dialog: a recorded line with a pause.",
     task: "Recordings",
     paper: null,
+    words: RECORDING_WORDS,
   },
 ];
 
 /** The first sentence of a note. @param {string} note */
 const firstSentence = (note) => /^[^\n]*?[.](?=\s|$)/.exec(note)?.[0] ?? note.split("\n")[0];
+
+/** The strings in a JSON value, without its keys: those are the same in every scenario. @param {any} value @returns {string[]} */
+function stringsOf(value) {
+  if (typeof value === "string") return [value];
+  return value !== null && typeof value === "object" ? Object.values(value).flatMap(stringsOf) : [];
+}
 
 /** @param {Preset[]} presets @param {import("./types.js").Scenario[]} saved @returns {Entry[]} */
 export function entriesOf(presets, saved) {
@@ -48,11 +58,14 @@ export function entriesOf(presets, saved) {
       text: firstSentence(each.note ?? ""),
       task: "My experiments",
       paper: null,
+      words: stringsOf(each).join(" "),
       saved: each,
     })),
     ...presets.map((preset) => {
       const { id, title, task, paper } = preset;
-      return { id, title, text: firstSentence(JSON.parse(preset.scenario).note), task, paper, preset };
+      const scenario = JSON.parse(preset.scenario);
+      const words = stringsOf(scenario).join(" ");
+      return { id, title, text: firstSentence(scenario.note), task, paper, words, preset };
     }),
     ...RECORDINGS,
   ];
@@ -69,8 +82,8 @@ export function groupsOf(entries, choice, search) {
   for (const entry of entries) {
     const group = choice === PAPERS ? entry.paper : entry.task;
     if (group === null || (choice !== PAPERS && choice !== ALL && choice !== group)) continue;
-    const { id, title, text, task, paper, preset } = entry;
-    const content = [id, title, text, task, paper, preset?.scenario].join(" ").toLowerCase();
+    const { id, title, text, task, paper, words: more } = entry;
+    const content = [id, title, text, task, paper, more].join(" ").toLowerCase();
     if (words.every((word) => content.includes(word))) groups.set(group, [...(groups.get(group) ?? []), entry]);
   }
   return [...groups].map(([title, entries]) => ({ title, entries }));

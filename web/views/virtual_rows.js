@@ -1,7 +1,7 @@
 /** A long table that only has its visible rows in the document. */
 
-/** Height of a row and of the heading, in CSS pixels, as in the style sheets. Fingers need higher ones. */
-export const ROW_PX = matchMedia("(pointer: coarse)").matches ? 24 : 20;
+/** Height of a row and of the heading, in CSS pixels, as in the style sheets. */
+export const ROW_PX = 24;
 /** Maximum height of the scrolled box: browsers limit it to some ten million pixels. A longer list scrolls in larger steps. */
 const MAX_PX = 6_000_000;
 

@@ -181,7 +181,7 @@ fn a_baseline_is_drawn_and_measured_next_to_a_later_run() -> Result<()> {
         let apart = position_error::compare(scaled(&own), scaled(&other), common_s);
         let told = page.text("#compared").await?.replace('\u{2212}', "-");
         ensure!(
-            told.contains(&format!("maximum difference {} steps", apart.largest)),
+            told.contains(&format!("maximum difference {} steps", apart.largest.abs())),
             "{} in {told}",
             apart.largest
         );

@@ -125,6 +125,7 @@ fn no_request_goes_to_another_host() -> Result<()> {
         page.open("").await?;
         page.preset("sonobe-2011-table").await?;
         page.until("document.documentElement.dataset.state === 'ready'").await?;
+        page.click("#more").await?;
         page.click("#theme").await?;
         page.click("#share").await?;
         page.click("#copy-link").await?;

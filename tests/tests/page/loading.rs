@@ -82,9 +82,10 @@ fn a_link_loads_only_visible_views() -> Result<()> {
 fn nothing_moves_while_the_page_loads() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(OBSERVE).await?;
-        for (width, height) in [(1440, 900), (1024, 768), (390, 844)] {
+        for (width, height) in [(1440, 900), (1366, 768), (1024, 768), (390, 844)] {
             page.screen(width, height).await?;
             page.open("").await?;
+            ensure!(page.visible("#welcome").await?, "a first visit has the cards");
             let seen = seen(&page).await?;
             ensure!(seen.cls == 0.0, "{width} x {height}: {} by {:?}", seen.cls, seen.shifted);
         }
@@ -124,6 +125,7 @@ fn a_part_that_fails_to_load_is_reported_and_requested_again() -> Result<()> {
         page.click("#title-pulses .term").await?;
         page.until("document.getElementById('term-card').textContent.startsWith('The text could not')")
             .await?;
+        page.click("#more").await?;
         page.click("#help").await?;
         page.until("document.getElementById('keys-list').textContent.startsWith('The keys could not')")
             .await?;

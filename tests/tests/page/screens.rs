@@ -158,6 +158,7 @@ fn the_selected_theme_overrides_the_system_and_is_saved() -> Result<()> {
         page.system_colours("light").await?;
         page.open("").await?;
         contrasts(&page, false).await?;
+        page.click("#more").await?;
         for _ in 0..3 {
             if page.eval::<bool>("document.documentElement.dataset.theme === 'dark'").await? {
                 break;

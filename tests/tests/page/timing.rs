@@ -1,6 +1,7 @@
 //! The driver timing check on the page: counts, margins, and the way from one violation to the next.
 
 use anyhow::{Result, ensure};
+use serde_json::json;
 use stepscope_core::{
     inspect::trace::{drivers, timing::TimingCheck},
     scenario::presets::PRESETS,
@@ -36,6 +37,14 @@ fn violations_are_counted_and_gone_through_one_by_one() -> Result<()> {
         let bad: u32 = page.eval("document.querySelectorAll('#margins tr.bad').length").await?;
         assert_eq!(bad as usize, check.results().iter().filter(|result| result.total() > 0).count());
 
+        // The preset opens with the first violations in sight; away from them, the pulses have to move.
+        let end = known.seconds(known.experiment.run(&mut Vec::new()).cycles().0);
+        for (id, at) in [("window-end", end), ("window-start", 0.9 * end)] {
+            let script = "const field = document.getElementById(arguments[0]); field.value = arguments[1]; \
+                          field.dispatchEvent(new Event('change')); return true;";
+            page.js::<bool>(script, vec![json!(id), json!(format!("{} ms", 1e3 * at))]).await?;
+        }
+        page.ready().await?;
         let pulses = page.pulses().await?.hash;
         for (index, violation) in check.violations().iter().enumerate().take(3) {
             page.click("#violation-next").await?;

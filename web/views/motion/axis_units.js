@@ -20,7 +20,7 @@ export function lookOf(state, axis) {
 }
 
 /** The derived values of an axis of the visible controller. @param {State} state @param {number} [axis] */
-function visibleAxis(state, axis = state.axis) {
+export function visibleAxis(state, axis = state.axis) {
   return state.derived?.controllers[state.result?.controller ?? 0]?.axes[axis];
 }
 

@@ -45,7 +45,7 @@ export function createCompare({ engine, dispatch, now }) {
     root.hidden = !state.baseline;
     if (!state.baseline || !state.result) return;
     const { showCompared } = await import("./compared.js");
-    await showCompared({ engine, dispatch }, state);
+    await showCompared(engine, state);
   }
 
   /** @param {State} state @param {State | undefined} before */

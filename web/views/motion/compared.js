@@ -1,10 +1,10 @@
 /** The comparison with the baseline: a table of figures before and after, and the difference of the positions. */
-import { button, byId, element, fill, setText } from "../../dom.js";
+import { byId, element, fill, setText } from "../../dom.js";
 import { unlessDropped } from "../../engine/engine.js";
 import { short, si, time } from "../../state/number.js";
 import { selected } from "../../state/queries.js";
-import { baselineAxis, unitOf } from "./axis_units.js";
-import { comparedRows } from "./compared_rows.js";
+import { baselineAxis, unitOf, visibleAxis } from "./axis_units.js";
+import { comparedRows, stretched } from "./compared_rows.js";
 import { unitPair } from "./request_columns.js";
 
 /** @typedef {import("../../state/types.js").State} State */
@@ -13,8 +13,11 @@ import { unitPair } from "./request_columns.js";
 /** Rows of one table; more are in a second one next to it. */
 const MAX_ROWS = 6;
 
-/** @param {{engine: import("../../engine/engine.js").Engine, dispatch: import("../../state/types.js").Page["dispatch"]}} page @param {State} state */
-export async function showCompared({ engine, dispatch }, state) {
+/** Whether motions of the same travel are compared at equal duration. */
+let isEqual = true;
+
+/** @param {import("../../engine/engine.js").Engine} engine @param {State} state */
+export async function showCompared(engine, state) {
   const { baseline, result, axis } = state;
   if (!baseline || !result) return;
   const isSame = baseline.revision === result.revision;
@@ -33,26 +36,43 @@ export async function showCompared({ engine, dispatch }, state) {
       ? `Compared with the baseline: ${baseline.title}. ${positionText(found.deviation, unit)}`
       : `Baseline: ${baseline.title}. Change the experiment or choose a preset. Dashed curves show the baseline.`,
   );
+  const tables = byId("compared-tables");
+  if (!found) return fill(tables);
+  const { figures } = found;
   const edges = [baseline.summary.controllers[baseline.controller].edges, selected(state)?.edges ?? 0];
-  const rows = found ? comparedRows(found.figures, edges, unit) : [];
-  const parts = rows.length > MAX_ROWS ? [rows.slice(0, MAX_ROWS), rows.slice(MAX_ROWS)] : rows.length ? [rows] : [];
-  const durations = found?.figures.find(({ name }) => name === "duration");
-  const isLonger = Boolean(durations?.change) && Boolean(state.scenario.source?.motion);
-  const equal = button(
-    "Compare ramps of equal duration",
-    "Open the study: every kind of motion in the same time",
-    () => {
-      dispatch({ type: "study", study: "compare" });
-      dispatch({ type: "view", view: "study" });
-    },
-  );
-  fill(byId("compared-tables"), ...parts.map(table), ...(isLonger ? [equal] : []));
+  const offersEqual = hasSameTravel(state) && Boolean(figures.find(({ name }) => name === "duration")?.change);
+  const show = () => {
+    const rows =
+      offersEqual && isEqual ? comparedRows(stretched(figures), null, unit) : comparedRows(figures, edges, unit);
+    const parts = rows.length > MAX_ROWS ? [rows.slice(0, MAX_ROWS), rows.slice(MAX_ROWS)] : [rows];
+    fill(tables, ...(offersEqual ? [equalBox(show)] : []), ...parts.map(table));
+  };
+  show();
+}
+
+/** Whether the motions of run and baseline have the same travel, so that their ramps can be compared. @param {State} state */
+function hasSameTravel(state) {
+  const [own, other] = [visibleAxis(state), baselineAxis(state).derived];
+  return own !== undefined && other !== undefined && own.steps === other.steps;
+}
+
+/** The choice of equal duration. @param {() => void} show */
+function equalBox(show) {
+  const box = element("input", { type: "checkbox" });
+  box.checked = isEqual;
+  box.addEventListener("change", () => {
+    isEqual = box.checked;
+    show();
+    document.getElementById("compared-tables")?.querySelector("input")?.focus();
+  });
+  const title = "Stretch this motion in time to the duration of the baseline: speeds and accelerations change with it";
+  return element("label", { class: "check", title }, box, "equal duration");
 }
 
 /** @param {import("../../state/types.js").Deviation} deviation @param {string} unit */
 function positionText({ largest, at_s, rms, common_s }, unit) {
-  const noun = largest === 1 ? unit.replace(/s$/, "") : unit;
-  return `Position: maximum difference ${short(largest)} ${noun} at ${time(at_s)}; RMS ${short(rms)} ${unit} over the common time of ${si(common_s, "s")}.`;
+  const noun = Math.abs(largest) === 1 ? unit.replace(/s$/, "") : unit;
+  return `Position: maximum difference ${short(Math.abs(largest))} ${noun} at ${time(at_s)}; RMS ${short(rms)} ${unit} over the common time of ${si(common_s, "s")}.`;
 }
 
 /** @param {string[][]} rows */

@@ -13,7 +13,10 @@ const PRINT = {
   full_steps: (value) => count(value),
 };
 /** What a figure without a value is called. @type {{[unit: string]: string}} */
-const MISSING = { acceleration: "undefined", speed: "none" };
+const MISSING = { acceleration: "none (speed jumps)", speed: "none" };
+
+/** Relative change below which two figures are equal: one of them is the result of a division. */
+const TOLERANCE = 1e-9;
 
 /** The change relative to the value before. @param {number} change @param {number} before */
 function relative(change, before) {
@@ -32,12 +35,32 @@ function changeText({ unit: kind, before, change }, unit) {
   return share ? `${absolute} (${share})` : absolute;
 }
 
-/** @param {ComparedFigure[]} figures @param {number[]} edges  Before and after. @param {string} unit  Of the axis. @returns {string[][]} */
-export function comparedRows(figures, [before, after], unit) {
+/** Exponents of time in the units that change when a motion is stretched in time. @type {{[unit: string]: number}} */
+const RATES = { seconds: -1, speed: 1, acceleration: 2 };
+
+/**
+ * The figures of the run stretched in time to the duration of the baseline. Figures of the pulses, such as the lag, are
+ * left out: another duration needs another run.
+ * @param {ComparedFigure[]} figures
+ */
+export function stretched(figures) {
+  const duration = figures.find(({ name }) => name === "duration");
+  const factor = (duration?.after ?? 1) / (duration?.before || 1);
+  return figures.flatMap((figure) => {
+    if (!(figure.unit in RATES)) return [];
+    const after = figure.after && figure.after * factor ** RATES[figure.unit];
+    const change = after === null || figure.before === null ? null : after - figure.before;
+    return [{ ...figure, after, change: Math.abs(change ?? 1) < TOLERANCE * Math.abs(after ?? 0) ? 0 : change }];
+  });
+}
+
+/** @param {ComparedFigure[]} figures @param {number[] | null} edges  Before and after. @param {string} unit  Of the axis. @returns {string[][]} */
+export function comparedRows(figures, edges, unit) {
   const text = (/** @type {ComparedFigure["unit"]} */ kind, /** @type {number | null} */ value) =>
     value === null ? (MISSING[kind] ?? "–") : PRINT[kind](value, unit);
-  const edges = { name: "edges", unit: /** @type {const} */ ("full_steps"), before, after, change: after - before };
-  return [...figures, edges].map((figure) => [
+  const [before, after] = edges ?? [0, 0];
+  const counts = { name: "edges", unit: /** @type {const} */ ("full_steps"), before, after, change: after - before };
+  return [...figures, ...(edges ? [counts] : [])].map((figure) => [
     figure.name,
     text(figure.unit, figure.before),
     text(figure.unit, figure.after),

@@ -49,7 +49,8 @@ export function createMotor({ engine, dispatch, now }) {
       reading,
     );
     const root = element("div", { class: "chart" }, caption, canvas);
-    const press = element("button", { type: "button", "aria-pressed": "false" }, quantity.title);
+    const { title, short: label = title } = quantity;
+    const press = element("button", { type: "button", "aria-pressed": "false", "aria-label": title, title }, label);
     press.addEventListener("click", () => {
       if (shownQuantities.has(quantity.name) && shownQuantities.size > 1) shownQuantities.delete(quantity.name);
       else shownQuantities.add(quantity.name);
@@ -88,8 +89,9 @@ export function createMotor({ engine, dispatch, now }) {
     }
     // --chart-px is the minimum height of a chart; with more charts than fit the view scrolls.
     stack.classList.toggle("many", visibleCharts.length > 4);
-    stack.style.gridTemplateRows = `repeat(${visibleCharts.length}, minmax(var(--chart-px), 1fr))`;
-    stack.style.minHeight = `calc(${visibleCharts.length} * var(--chart-px) + ${2 * TIME_PX}px)`;
+    const rows = visibleCharts.length - 1;
+    stack.style.gridTemplateRows = `${"minmax(var(--chart-px), 1fr) ".repeat(rows)}calc((100% - ${TIME_PX}px) / ${rows + 1} + ${TIME_PX}px)`;
+    stack.style.minHeight = `calc(${rows + 1} * var(--chart-px) + ${2 * TIME_PX}px)`;
   }
 
   /** @param {State} state */

@@ -7,7 +7,7 @@ import { shapeOf } from "../lines.js";
 
 /** @typedef {{x: Float64Array, min: Float64Array, max: Float64Array}} Band */
 /** @typedef {{[name: string]: Band}} Curves  By their names in the core. */
-/** @typedef {{name: string, title: string, unit: string, lines: {of: string, label: string, ink: string, dash?: number, width?: number}[]}} Quantity */
+/** @typedef {{name: string, title: string, short?: string, unit: string, lines: {of: string, label: string, ink: string, dash?: number, width?: number}[]}} Quantity */
 
 /** @type {Quantity[]} */
 export const QUANTITIES = [
@@ -23,6 +23,7 @@ export const QUANTITIES = [
   {
     name: "error",
     title: "Following error",
+    short: "Error",
     unit: "full steps",
     lines: [{ of: "error", label: "error; red: slip of 4 full steps", ink: "--actual" }],
   },
@@ -30,6 +31,7 @@ export const QUANTITIES = [
   {
     name: "phases",
     title: "Phase currents",
+    short: "Phase",
     unit: "A",
     lines: [
       { of: "phase_a_a", label: "A", ink: "--actual" },
@@ -39,13 +41,20 @@ export const QUANTITIES = [
   {
     name: "supply",
     title: "Supply current",
+    short: "Supply",
     unit: "A",
     lines: [
       { of: "load_a", label: "all motors", ink: "--ideal", dash: 3, width: 1 },
       { of: "sensor_a", label: "at the sensor", ink: "--actual", width: 1.8 },
     ],
   },
-  { name: "bus", title: "Bus voltage", unit: "V", lines: [{ of: "bus_v", label: "at the drivers", ink: "--actual" }] },
+  {
+    name: "bus",
+    title: "Bus voltage",
+    short: "Bus",
+    unit: "V",
+    lines: [{ of: "bus_v", label: "at the drivers", ink: "--actual" }],
+  },
   {
     name: "encoder",
     title: "Encoder",
