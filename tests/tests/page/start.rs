@@ -96,7 +96,10 @@ fn the_gallery_is_searched_and_closed_by_keys() -> Result<()> {
         page.until_equal(FOCUS, &json!("gallery-search")).await?;
         let all: Vec<String> = page.eval(FOUND).await?;
         key(&page, &[], ENTER).await?;
-        ensure!(page.eval::<bool>("document.getElementById('gallery').open").await?, "nothing is searched for");
+        ensure!(
+            page.eval::<bool>("document.getElementById('gallery').open").await?,
+            "nothing is searched for"
+        );
         for (search, some, max) in [
             ("noise", "framed-noisy-line", 6),
             ("glitches", "glitches-and-breaks", 4),
