@@ -1,7 +1,7 @@
 //! `stepscope check`: recordings, runs and tables of a project, checked as in CI.
 //!
 //! ```text
-//! stepscope-checks.json -> one call of stepscope per check, in the folder of that file -> lines, JUnit, Markdown
+//! stepscope-checks.json -> one run of stepscope per check, in the folder of that file -> lines, JUnit, Markdown
 //! ```
 
 mod entry;
@@ -27,7 +27,7 @@ const SIGINT: i32 = 2;
 pub(crate) struct Arguments {
     /// List of checks (format: docs/command.md); `-` reads standard input
     ///
-    /// Paths in it count from its folder.
+    /// Paths in the list are relative to its folder.
     #[arg(default_value = "stepscope-checks.json")]
     file: PathBuf,
     /// Write the results as JUnit XML

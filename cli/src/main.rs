@@ -118,8 +118,8 @@ enum Command {
     Capture(capture::Arguments),
     /// Check recordings, runs and tables of a project, as in CI
     ///
-    /// Makes each check of a list and prints a line for each: a recording against a scenario, the digest and the
-    /// driver timing of a run, a table against its scenario.
+    /// Runs each check of a list and prints one line per check. A check compares a recording with a scenario, checks the
+    /// digest and the driver timing of a run, or compares a table with its scenario.
     Check(check::Arguments),
     /// Cut the power of stand-alone controllers and check the restored position
     ///

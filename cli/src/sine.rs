@@ -20,11 +20,11 @@ pub(crate) enum Command {
     Sweep {
         #[command(flatten)]
         range: Range,
-        /// Number of maximum deviations in the range
+        /// Number of values of d1 in the range
         #[arg(long, value_name = "N", default_value = "500", value_parser = whole::<u32>(2..=1_000_000))]
         points: u32,
     },
-    /// Find the deviation limit d1 that gives the least distortion
+    /// Find the maximum deviation d1 with the minimum distortion
     ///
     /// Compares every distinct polyline in the range.
     Best {

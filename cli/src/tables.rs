@@ -89,9 +89,10 @@ pub(crate) struct Arguments {
     walker: bool,
     /// Compare a table with the plan, step by step; exit code 3 if it differs
     ///
-    /// FILE is a table in C; without FILE, the table that --format c would write is compared. Each step must have its
-    /// direction, and its time within the error that the table states, and the shortest and longest event must be as stated.
-    /// The first table of a file belongs to --axis, by default that of the command in its header. Nothing else is written.
+    /// FILE is a table in C; without FILE, the table that --format c would write is compared. The direction of each step must
+    /// be that of the plan, and its time must be within the error that the table states. The stated shortest and longest event
+    /// must be correct, too. The first table of a file belongs to --axis, by default the axis in its header. No file is
+    /// written.
     #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["json", "with_walker"])]
     check: Option<Option<PathBuf>>,
     #[command(flatten)]

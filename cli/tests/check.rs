@@ -98,7 +98,7 @@ fn checks_that_cannot_run_are_errors() {
         let (code, out, err) = check(&folder);
         assert_eq!(code, Some(expected_code), "{list}: {out}{err}");
         assert!(out.starts_with(line) && out.contains(", 1 error\n"), "{list}: {out}");
-        assert!(err.contains("a check could not be made; see its line"), "{err}");
+        assert!(err.contains("a check could not run; see its line"), "{err}");
         assert!(
             fs::read_to_string(folder.join("junit.xml")).expect("a report").contains("<error message="),
             "{list}"

@@ -6,7 +6,7 @@ use stepscope_core::prelude::*;
 
 fn main() -> Result<(), Problems> {
     let scenario: Scenario = include_str!("turn.json").parse()?;
-    let due = step_times(&scenario, 0)?; // where the plan wants each step, in cycles from the start
+    let due = step_times(&scenario, 0)?; // planned steps of axis 0, in cycles from the start
     let run = run(&scenario)?; // what the motors are given, to the clock cycle
     println!("{} steps, digest {:016x}", due.len(), run.digest());
     assert_eq!(run.positions(), [3200]);

@@ -13,11 +13,11 @@
 //!     // One turn in 0.4 s by a cosine S-curve; every other field has its default.
 //!     let scenario: Scenario = r#"{ "source": { "motion": { "axes": [ { "moves": [
 //!         { "cosine": { "distance": { "deg": 360 }, "duration_s": 0.4, "ramp_s": 0.2 } } ] } ] } } }"#.parse()?;
-//!     let due = step_times(&scenario, 0)?; // where the plan wants each step, in cycles from the start
-//!     let run = run(&scenario)?; // what the motors are given, to the clock cycle
+//!     let due = step_times(&scenario, 0)?; // planned steps of axis 0, in cycles from the start
+//!     let run = run(&scenario)?; // the actual pulses, cycle by cycle
 //!     println!("{} steps, digest {:016x}", due.len(), run.digest());
 //!     assert_eq!(run.positions(), [3200]);
-//!     assert_eq!(first_difference(&due, &due, Cycles(16)), None); // the second: your own step generator's
+//!     assert_eq!(first_difference(&due, &due, Cycles(16)), None); // second list: those of your own step generator
 //!     Ok(())
 //! }
 //! # #[cfg(not(feature = "sim"))]

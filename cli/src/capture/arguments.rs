@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     /// Data bits, parity and stop bits of RX and TX, such as 7E1 (default: 8N1)
     #[arg(long, value_name = "FORMAT", value_parser = parsed::<uart::Format>)]
     pub(super) uart: Option<uart::Format>,
-    /// Base of decoded bytes: hex, dec, oct or bin (default: by their digits)
+    /// Base of decoded bytes: hex, dec, oct or bin (default: detected from the digits)
     #[arg(long, value_name = "BASE", value_parser = parsed::<Base>)]
     pub(super) base: Option<Base>,
     /// Compare with the run of this scenario: a JSON file or a preset's name
@@ -63,12 +63,12 @@ pub(crate) struct Arguments {
     pub(super) within_us: Option<ExactMicroseconds>,
     /// Write the delay of each step or byte (CSV)
     ///
-    /// Missing and extra ones also have rows.
+    /// Missing and extra steps or bytes also have rows.
     #[arg(long, value_name = "FILE", requires = "against")]
     pub(super) late: Option<PathBuf>,
     /// Write a scenario that reproduces the recording
     ///
-    /// If RX has bytes, the scenario sends them to the controllers of --against. Otherwise it makes the steps.
+    /// If RX has bytes, the scenario sends them to the controllers of --against. Otherwise it reproduces the steps.
     #[arg(short = 'o', long, alias = "scenario", value_name = "FILE")]
     pub(super) write_scenario: Option<PathBuf>,
     /// Make the scenario from steps even if RX has bytes

@@ -11,7 +11,7 @@ pub(super) enum Outcome {
     Passed,
     /// The first difference.
     Failed(String),
-    /// The exit code, and why the check could not be made.
+    /// The exit code, and why the check could not run.
     Error(i32, String),
 }
 
@@ -77,7 +77,7 @@ impl<'e> Results<'e> {
         self.count(|outcome| matches!(outcome, Outcome::Error(..)))
     }
 
-    /// A check that could not be made comes before one that failed.
+    /// A check that could not run takes precedence over one that failed.
     pub(super) fn failure(&self) -> Option<Failure> {
         let codes = || {
             self.0.iter().filter_map(|result| match &result.outcome {
@@ -85,7 +85,7 @@ impl<'e> Results<'e> {
                 _ => None,
             })
         };
-        let why = || "a check could not be made; see its line".to_owned();
+        let why = || "a check could not run; see its line".to_owned();
         if let Some((_, file)) = codes().find(|(code, _)| *code == 1) {
             return Some(Failure::Unusable(file.to_owned(), why()));
         }

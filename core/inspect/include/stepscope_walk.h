@@ -1,18 +1,18 @@
-/* stepscope_walk.h: walks step tables that `stepscope tables --format c` or `--format avr` writes.
+/* stepscope_walk.h: walks the step tables of `stepscope tables --format c` and `--format avr`.
  *
  * Put this file next to the tables. C99, C++11 and avr-gcc 5.4; no heap, no floats, no loops. A call reads at most one
  * entry and changes only its walk, so separate walks may interrupt each other. For a table named turn:
  *
  *   turn_walk walk;                             turn_begin(&walk) begins at time 0, direction left
- *   uint8_t event = turn_next(&walk, &cycles);  the next event, `cycles` after the one before it
+ *   uint8_t event = turn_next(&walk, &cycles);  the next event, `cycles` after the previous one
  *
  *   STEPSCOPE_STEP  a step, to the right if walk.right is 1, else to the left
  *   STEPSCOPE_WAIT  no step; afterwards walk.right may have changed
  *   STEPSCOPE_END   no more events; cycles is 0
  *
  * Fractions of a cycle are carried, so times are those of the table, rounded down. A change of direction is a WAIT of
- * 0 cycles; the next event follows it at once and has a time. A table without steps is one WAIT of 0 cycles. All other
- * events have TURN_MIN_CYCLES to TURN_MAX_CYCLES: an interval that is too long for an entry is divided evenly into waits.
+ * 0 cycles: call turn_next again immediately. A table without steps is one WAIT of 0 cycles. All other events take
+ * TURN_MIN_CYCLES to TURN_MAX_CYCLES. An interval that is too long for an entry is divided evenly into waits.
  * A sample interrupt, for Timer1 of an AVR without prescaler and TURN_MAX_CYCLES below 65536:
  *
  *   static turn_walk walk;
@@ -31,9 +31,8 @@
  *   }
  *
  * MISRA C:2012: cppcheck's add-on reports rules 2.3, 2.5, 8.9 and 20.7 here and in a table. They are deviations, as are
- * directive 4.9 and rule 20.10: STEPSCOPE_TABLE makes a type and two functions of a table's name (so its parameters are
- * operands of ## and take no parentheses), an array has its functions as only users, and no file uses all types and
- * macros.
+ * directive 4.9 and rule 20.10. STEPSCOPE_TABLE forms a type and two functions from a table's name, so its parameters
+ * are operands of ## without parentheses. Only these functions use the array, and no file uses all types and macros.
  */
 #ifndef STEPSCOPE_WALK_H
 #define STEPSCOPE_WALK_H
@@ -51,8 +50,8 @@
 #define STEPSCOPE_STEP 1U
 #define STEPSCOPE_WAIT 2U
 
-/* `count` steps, the first `interval` after the event before it; the interval then changes by `add` per step. With
- * count 0 a wait of `interval`, and afterwards the direction `add`: 1 right, 0 left. */
+/* `count` steps, the first one `interval` after the previous event; the interval then changes by `add` per step. If
+ * count is 0, a wait of `interval`; `add` is the direction after it: 1 right, 0 left. */
 typedef struct {
     uint32_t interval; /* cycles */
     uint16_t count;
@@ -169,7 +168,7 @@ static inline uint8_t stepscope_q16_event(stepscope_q16_walk *w, uint64_t *cycle
     return event;
 }
 
-/* Reading an entry takes it into the walk */
+/* Reads an entry into the walk */
 static inline void stepscope_ticks_read(stepscope_ticks_walk *w, const stepscope_ticks_entry *from)
 {
     stepscope_ticks_take(w, *from);
@@ -217,8 +216,8 @@ static inline void stepscope_q16_read_p(stepscope_q16_walk *w, const stepscope_q
 }
 #endif
 
-/* Makes NAME_walk, NAME_begin() and NAME_next() of NAME_entries. (cppcheck takes the two functions for one, as both are
- * in one line of the table; the second pointer keeps it from reporting a walk that is used before its begin.) */
+/* Defines NAME_walk, NAME_begin() and NAME_next() for NAME_entries. The second pointer avoids a false report of
+ * cppcheck, which cannot tell the two functions of one line apart: use of a walk before its begin. */
 #define STEPSCOPE_TABLE(name, kind, read)                                              \
     typedef stepscope_##kind##_walk name##_walk;                                       \
     static inline void name##_begin(name##_walk *w)                                    \

@@ -22,7 +22,7 @@ settings! {
         /// Name of the experiment; part of the link.
         pub title: String = String::new() => label("Name").length(0..=120, "characters")
             .term("Name", "Name of the experiment. It is part of the link."),
-        /// What to look at, and the source of the values.
+        /// What to inspect, and the source of the values.
         pub note: String = String::new() => label("Note").length(0..=2000, "characters")
             .term("Note", "What the person who opens the link should see and try."),
         /// Clock of the peripheral. All `_cycles` fields count periods of this clock.

@@ -50,26 +50,26 @@ fields! {
     GroupMove {
         /// Index of the axis, from 0 on.
         axis: u8 => label("Axis").range_text("0 to the number of axes - 1"),
-        /// Its own kind of move; no new target.
+        /// Any kind of move but a new target.
         r#move: Move => label("Move"),
     }
     /// A straight line within the `limits` of all axes.
     LineGroup {
         /// One per axis; an axis with 0 stands still.
         distances: Vec<Distance> => DISTANCE.range_text("one for each axis"),
-        /// Limited jerk, or jumps of the acceleration.
+        /// How the acceleration changes.
         profile: LimitedProfile => label("Profile"),
     }
     /// The axes pass the points within their `limits`, and come to rest at the last one.
     WayPointGroup {
-        /// Points in order; all groups together have at most 16384 points, times the axes.
+        /// Points in order. In all groups together, points times axes are at most 16384.
         points: Vec<WayPoint> => label("Points").length(1..=MAX_POINTS, "points"),
     }
     /// A point that all axes pass in the same instant.
     WayPoint {
         /// Positions from the start of the motion, one for each axis; rounded to whole steps.
         positions: Vec<Distance> => label("Positions").range_text("one for each axis"),
-        /// Speeds at the point, one for each axis, negative to the left; null is a suitable speed.
+        /// Speeds at the point, one per axis, negative to the left. A null in the list selects a suitable speed.
         speeds: Option<Vec<Option<Speed>>> => label("Speeds").range_text("one for each axis").null_means("suitable speeds"),
     }
     /// The vibration of the machine.

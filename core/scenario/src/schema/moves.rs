@@ -322,7 +322,7 @@ fields! {
             .term("Cut at", "Time after the start of the previous move at which the new target takes over."),
         /// Where the axis goes.
         target: Target => label("Target"),
-        /// Limited jerk, or jumps of the acceleration.
+        /// How the acceleration changes.
         profile: LimitedProfile => label("Profile")
             .term("Profile", "Jerk-limited: the acceleration changes gradually. Trapezoid: the acceleration jumps, so the move is shorter."),
         /// Maximum speed.

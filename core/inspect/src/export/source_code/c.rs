@@ -41,7 +41,7 @@ impl Source<'_> {
         writeln!(out, "#define {capitals}_MAX_ERROR_CYCLES {}", long(table.error.max_cycles))?;
         writeln!(
             out,
-            "#define {capitals}_MIN_CYCLES {} /* of an event of {name}_next(), without waits of 0 */",
+            "#define {capitals}_MIN_CYCLES {} /* shortest event of {name}_next(), without waits of 0 */",
             long(extremes.min.unwrap_or(0))
         )?;
         writeln!(out, "#define {capitals}_MAX_CYCLES {}", long(extremes.max))?;

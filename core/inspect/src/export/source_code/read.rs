@@ -20,7 +20,7 @@ pub struct WrittenTable {
     pub steps: u64,
     pub clock_hz: u64,
     pub max_error_cycles: u64,
-    /// Least and greatest cycles of an event, without waits of 0.
+    /// Minimum and maximum cycles of an event, without waits of 0.
     pub min_cycles: u64,
     pub max_cycles: u64,
 }

@@ -140,7 +140,7 @@ impl NamedTable<'_> {
 /// Times of a table's walk, in cycles.
 #[derive(Default)]
 pub(super) struct Extremes {
-    /// Of the events, without waits of 0.
+    /// Shortest event, without waits of 0.
     pub(super) min: Option<u64>,
     pub(super) max: u64,
     /// From one step to the next.

@@ -58,7 +58,7 @@ fn a_table_in_c_has_this_form() {
 #define TURN_CLOCK_HZ 16000000UL
 #define TURN_FRACTION_BITS 0U
 #define TURN_MAX_ERROR_CYCLES 0UL
-#define TURN_MIN_CYCLES 16130UL /* of an event of turn_next(), without waits of 0 */
+#define TURN_MIN_CYCLES 16130UL /* shortest event of turn_next(), without waits of 0 */
 #define TURN_MAX_CYCLES 40000UL
 
 static const stepscope_ticks_entry turn_entries[TURN_ENTRIES] PROGMEM = {
