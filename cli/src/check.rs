@@ -38,8 +38,9 @@ pub(crate) struct Arguments {
     summary: Option<PathBuf>,
 }
 
-pub(crate) fn check(arguments: &Arguments) -> Result<(), Failure> {
-    let entries = entry::read(&arguments.file, &scenarios::text(&arguments.file)?)?;
+/// `command` is the whole command line, which validates the options of each check.
+pub(crate) fn check(arguments: &Arguments, mut command: clap::Command) -> Result<(), Failure> {
+    let entries = entry::read(&arguments.file, &scenarios::text(&arguments.file)?, &mut command)?;
     let mut outputs = Outputs::default();
     let mut create = |path: &Option<PathBuf>| path.as_ref().map(|path| outputs.create(path)).transpose();
     let (junit, summary) = (create(&arguments.junit)?, create(&arguments.summary)?);

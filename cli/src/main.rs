@@ -204,7 +204,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Limits(arguments) => limits::limits(&arguments),
         Command::Resonance(arguments) => limits::resonance(&arguments),
         Command::Capture(arguments) => capture::capture(&arguments),
-        Command::Check(arguments) => check::check(&arguments),
+        Command::Check(arguments) => check::check(&arguments, Arguments::command()),
         Command::Powercut(arguments) => powercut::powercut(&arguments),
         Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
         Command::Sine(command) => sine::sine(&command),

@@ -1,7 +1,6 @@
 //! The entries of a list of checks, and the command lines that make them.
 
 use crate::{failure::Failure, suggest};
-use clap::CommandFactory;
 use serde_json::{Map, Value};
 use std::path::Path;
 
@@ -64,7 +63,7 @@ impl Entry {
 ///
 /// # Errors
 /// [`Failure::Invalid`] with every problem.
-pub(super) fn read(path: &Path, text: &str) -> Result<Vec<Entry>, Failure> {
+pub(super) fn read(path: &Path, text: &str, command: &mut clap::Command) -> Result<Vec<Entry>, Failure> {
     let wrong = |why: String| Failure::Invalid(path.to_owned(), why);
     let value: Value = serde_json::from_str(text)
         .map_err(|error| wrong(format!("not JSON: {error}; use {{\"checks\": [ … ]}}")))?;
@@ -78,10 +77,8 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Vec<Entry>, Failure> {
         return Err(wrong(format!("{} checks; use 1 to {MAX_CHECKS}", list.len())));
     }
     let (mut entries, mut problems) = (Vec::new(), Vec::new());
-    let mut command = crate::Arguments::command();
     for (index, value) in list.iter().enumerate() {
-        let mut reader =
-            Reader { path: format!("checks[{index}]"), problems: &mut problems, command: &mut command };
+        let mut reader = Reader { path: format!("checks[{index}]"), problems: &mut problems, command };
         entries.extend(reader.entry(value));
     }
     if problems.is_empty() { Ok(entries) } else { Err(wrong(problems.join("\n  "))) }
