@@ -253,7 +253,7 @@ fn tables(report: &Report, wire: &Wire, lost: Option<&str>) -> Tables {
             "state": row.known.last.map(|last| last.state.name()),
             "new_faults": row.new_faults().join(" "),
             "stop_acknowledged": row.known.stop_acknowledged,
-            "tells_positions": !row.known.hides_positions,
+            "reports_positions": !row.known.hides_positions,
         })
     });
     let positions = rows.iter().flat_map(|row| {
@@ -264,7 +264,7 @@ fn tables(report: &Report, wire: &Wire, lost: Option<&str>) -> Tables {
             json!({
                 "controller": row.controller,
                 "channel": channel,
-                "told": reported,
+                "reported": reported,
                 "expected": of(row.expected.as_ref()),
                 "steps_of_done_ticks": of(row.bounds.as_ref().map(|(least, _)| least)),
                 "steps_with_the_next_tick": of(row.bounds.as_ref().map(|(_, most)| most)),
