@@ -13,7 +13,7 @@
 /* ---- CRC-32C, reflected, four bits at a time ---- */
 
 #define CRC_BEGIN 0xffffffffu
-/* What is left when a message and its own check have gone through. */
+/* The CRC of a message followed by its CRC. */
 #define CRC_RESIDUE 0xb798b438u
 
 static const uint32_t crc_of_nibble[16] PROGMEM = {
@@ -58,7 +58,7 @@ void line_send(uint8_t *frame, uint8_t length)
 
 /* ---- from the host: COBS, byte by byte ---- */
 
-/* Decoded bytes of a frame, at most and at least. */
+/* Maximum and minimum decoded bytes of a frame. */
 #define FRAME_MAX 600
 #define FRAME_MIN 6
 #define CHECK_BYTES 4
@@ -109,14 +109,14 @@ static void hear(uint8_t byte)
     }
 }
 
-/* As long as its counters go round. */
+/* The counters wrap at this length. */
 static volatile uint8_t ring[256], heard, taken;
 
 ISR(USART_RX_vect)
 {
     uint8_t status = UCSR0A, byte = UDR0;
     if (status & _BV(FE0))
-        fault(FRAMING); /* The byte is missing, and its frame fails its check. */
+        fault(FRAMING); /* The byte is missing, so the CRC of its frame is wrong. */
     else if ((uint8_t)(heard + 1) != taken)
         ring[heard++] = byte;
 }
@@ -132,7 +132,7 @@ void line_hear(void)
 {
     cli();
     if (heard == taken) {
-        /* Nothing comes between these two: an interrupt wakes it. */
+        /* No interrupt can occur between these two, so the next one wakes the chip. */
         sleep_enable();
         sei();
         sleep_cpu();

@@ -1,5 +1,5 @@
 /*
- * The framed line (DESIGN A6) on the ATmega328P's UART: bytes in, good frames out, and replies.
+ * The framed line (DESIGN A6) on the ATmega328P's UART: receives bytes, returns valid frames, and sends replies.
  *
  *   RXD ──> ring ──> COBS, CRC-32C ──> frame_arrived
  *           (interrupt)  (main loop)
@@ -10,10 +10,10 @@
 
 #include <stdint.h>
 
-/* 16 MHz has it exactly. */
+/* Exact at 16 MHz. */
 #define BAUD 250000
 
-/* Of a longer body the rest is looked at and not kept: no kind has one. */
+/* The rest of a longer body is checked but not stored: no kind has one. */
 #define BODY_KEPT 66
 
 /* Fault flags of the line */
@@ -26,16 +26,16 @@ enum line_fault {
 
 void line_begin(void);
 
-/* Takes what has been heard, or sleeps until an interrupt. */
+/* Processes the received bytes, or sleeps until an interrupt. */
 void line_hear(void);
 
-/* Sends a frame of fewer than 250 bytes; there is room behind it for its check. */
+/* Sends a frame of fewer than 250 bytes; the buffer has space for its CRC. */
 void line_send(uint8_t *frame, uint8_t length);
 
-/* The program's: a good frame without its check, at least address and kind. */
+/* Implemented by the program: a valid frame without its CRC, at least address and kind. */
 void frame_arrived(const uint8_t *frame, uint16_t length);
 
-/* The program's: a flag to be set. */
+/* Implemented by the program: sets a flag. */
 void fault(uint16_t flag);
 
 #endif

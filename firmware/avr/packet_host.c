@@ -1,18 +1,18 @@
 /*
- * Sends raw packets at a fixed pace: the host of a line, on an ATmega328P at 16 MHz.
+ * Sends raw packets at a fixed rate: the host of a line, on an ATmega328P at 16 MHz.
  *
- * packets.h holds what the scenario's own host would send: PACKETS packets of PACKET_BYTES bytes, a packet every
+ * packets.h contains the packets of the scenario's host: PACKETS packets of PACKET_BYTES bytes, one packet every
  * TICK_CYCLES, each bit BIT_CYCLES long, 8N1.
  *
- * Timer1 counts the processor's cycles and is never set back. The pin is set by the program, which looks for the compare
- * match of each bit in a loop: an edge comes some cycles after its match, but no delay adds to the next one's.
+ * Timer1 counts the processor's cycles and is never reset. The program polls the compare match of each bit in a loop and
+ * sets the pin. An edge is some cycles later than its match, but delays do not accumulate.
  *
  *   compare match     |               |               |
- *   looked at     ^  ^  ^               ^  ^  ^  ^  ^  ^
+ *   polled        ^  ^  ^               ^  ^  ^  ^  ^  ^
  *   pin           ~~~~~~|___start bit___|_____bit 0____|~~
  *
- * Before packet BUSY_BEFORE the host is busy for as long as an ATmega writes a byte of its EEPROM: longer than a tick. The
- * packet after it is on time again, but by then the device has rested, and all that follows comes that much later.
+ * Before packet BUSY_BEFORE the host is busy for the time that an ATmega needs to write a byte of its EEPROM, longer than
+ * a tick. The packet after it is on time again, but the queue of the device has run empty, so all later ticks are late.
  */
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -20,19 +20,19 @@
 
 #include "packets.h"
 
-/* Port B: the line as the device hears it, and when the host has something else to do */
+/* Port B: the line to the device, and a pin that is high while the host is busy */
 #define LINE _BV(PORTB0)
 #define BUSY _BV(PORTB1)
 
-/* From the start of the program to the first packet */
+/* Cycles from the start of the program to the first packet */
 #define LEAD_CYCLES 8000u
 
-/* A wait and no real writing: simavr 1.6 writes in no time. */
+/* A wait instead of a write, because simavr 1.6 writes in no time. */
 #define BUSY_BEFORE 24
 #define BUSY_US 3400
 
 #if TICK_CYCLES > 32767
-#error "whether a packet is late is told by 16 bits with a sign: give a scenario with ticks of at most 32767 cycles"
+#error "lateness of a packet is computed with signed 16 bits: use a scenario with ticks of at most 32767 cycles"
 #endif
 
 static void wait_for_match(void)
@@ -41,7 +41,7 @@ static void wait_for_match(void)
     TIFR1 = _BV(OCF1A);
 }
 
-/* Sends a byte whose start bit begins at the match that is set; the next match is then the end of its stop bit. */
+/* Sends a byte whose start bit begins at the current match; afterwards the match is the end of its stop bit. */
 static void send(uint8_t byte)
 {
     uint16_t frame = 0x200 | byte << 1;
@@ -56,7 +56,7 @@ static void send(uint8_t byte)
     }
 }
 
-/* Sets the next match to the cycle in which a packet is due, or shortly ahead where that is over. */
+/* Sets the next match to the due cycle of a packet, or shortly ahead if that has passed. */
 static void begin_at(uint16_t due)
 {
     OCR1A = due;
@@ -70,7 +70,7 @@ static void begin_at(uint16_t due)
 int main(void)
 {
     uint16_t due = LEAD_CYCLES;
-    /* High before it is an output, as the line's pull-up has it. */
+    /* High before it becomes an output, like the line's pull-up. */
     PORTB = LINE;
     DDRB = LINE | BUSY;
     TCCR1B = _BV(CS10);
@@ -89,7 +89,7 @@ int main(void)
     wait_for_match();
     PORTB |= BUSY;
 
-    /* Asleep for good. */
+    /* Sleeps forever. */
     sleep_enable();
     sleep_cpu();
 }

@@ -1,5 +1,5 @@
 /*
- * What simavr is to record of packet_host.c: a section of its own in the program's file, which is not in the chip.
+ * The pins of packet_host.c that simavr records: a separate section of the program's file, which is not written to a chip.
  */
 #include <avr/io.h>
 #include <avr_mcu_section.h>

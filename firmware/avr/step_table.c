@@ -1,8 +1,8 @@
 /*
- * Walks a step table: a controller that makes a motion by itself, on an ATmega328P at 16 MHz.
+ * Walks a step table: a controller that runs a motion without a host, on an ATmega328P at 16 MHz.
  *
- * plan.h is the table, as `stepscope tables SCENARIO --format avr --with-walker --name plan --out plan.h` writes it, next
- * to stepscope_walk.h, which walks it: plan_next() has the cycles to the next step.
+ * plan.h is the table of `stepscope tables SCENARIO --format avr --with-walker --name plan --out plan.h`. The command also
+ * writes stepscope_walk.h, which walks the table: plan_next() returns the cycles to the next step.
  *
  * Timer1 counts the processor's cycles and is never reset, so nothing is lost between two steps; the compare register
  * moves from step to step. It has 16 bits: longer waits use intermediate matches that do nothing.
@@ -11,8 +11,8 @@
  *   STEP           __|~~|__________|~~|________________|~~|____
  *   cycles           |<- interval->|<--0x8000--->|rest>|
  *
- * STEP rises as the first thing that the interrupt does, always as many cycles after it was let in. When it is let in is the
- * jitter: an instruction is finished first, and main() keeps all interrupts out while it makes a report.
+ * The interrupt first raises STEP, always the same number of cycles after its start. Its start has jitter: the current
+ * instruction is finished first, and main() disables all interrupts while it computes a report.
  */
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -26,11 +26,11 @@
 #define STEP _BV(PORTB0)
 #define DIR _BV(PORTB1)
 
-/* A report's bits: 16 MHz / (8 * (UBRR0 + 1)) = 500000 baud, with U2X0 */
+/* Bit rate of a report: 16 MHz / (8 * (UBRR0 + 1)) = 500000 baud, with U2X0 */
 #define REPORT_UBRR 3
 
 #if PLAN_CLOCK_HZ != F_CPU
-#error "plan.h counts other cycles than Timer1: use a scenario of clock_hz 16000000"
+#error "plan.h has another clock than Timer1: use a scenario with clock_hz 16000000"
 #endif
 #if PLAN_FRACTION_BITS > 8
 #error "plan.h has times of 64 bits: use --entries ticks or q8"
@@ -39,7 +39,7 @@
 static plan_walk walk;
 static uint8_t event;
 
-/* Cycles from the match that the timer waits for to the event. */
+/* Cycles from the next match to the event. */
 static uint32_t beyond;
 
 static volatile int16_t position;
@@ -74,7 +74,7 @@ ISR(TIMER1_COMPA_vect)
         }
         next_event();
         PORTB &= ~STEP;
-        /* Where the table turns here, DIR changes after the fall. */
+        /* If the direction changes here, DIR changes after the fall. */
         PORTB = walk.right ? DIR : 0;
     }
     set_match();
@@ -87,8 +87,8 @@ static void send(uint8_t byte)
 }
 
 /*
- * Sends where the motor is: low byte, high byte, and a check of both. The check is made with interrupts off, which it
- * need not be: that is where the recording's late steps come from.
+ * Sends the position of the motor: low byte, high byte, and a CRC of both. The CRC is computed with interrupts disabled,
+ * which is unnecessary and causes the late steps of the recording.
  */
 static void report(void)
 {
@@ -124,7 +124,7 @@ int main(void)
     while (!done)
         report();
 
-    /* With interrupts off, nothing wakes the chip. */
+    /* With interrupts disabled, nothing wakes the chip. */
     cli();
     sleep_enable();
     sleep_cpu();

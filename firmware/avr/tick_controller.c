@@ -1,19 +1,19 @@
 /*
- * A controller that does the ticks of a framed line (docs/documents.md, DESIGN A6 and A7), on an ATmega328P at 16 MHz: what
- * `stepscope send` talks to. Two channels; the scenario with the same numbers is tick-controller.json.
+ * A controller that executes the ticks of a framed line (docs/how-it-works.md, DESIGN A6 and A7), on an ATmega328P at
+ * 16 MHz, for `stepscope send`. It has two channels; tick-controller.json is the scenario with the same parameters.
  *
- *   framed_line.c ── a good frame ──> queue of ticks ── Timer1, a match a slot ──> DIR and STEP
- *                    (main loop)                        (interrupt)
+ *   framed_line.c ── valid frame ──> queue of ticks ── Timer1, one match per slot ──> DIR and STEP
+ *                    (main loop)                       (interrupt)
  *
- * A slot's match comes every SLOT_CYCLES. Interrupts may be late, by each other and by the main loop; so the pins are written
- * when the timer has counted to a fixed place after the match, and what went before does not show:
+ * Each slot begins with a match, every SLOT_CYCLES. Other interrupts and the main loop may delay the interrupt, so it writes
+ * the pins when the timer has reached a fixed count after the match. This hides the delays:
  *
  *   match        |                         |
  *   interrupt    ---|======|----------------|======|------
  *   STEP         ________|~|_________________|~~|_________     EDGE_CYCLES after the match, PULSE_CYCLES long
  *
- * It speaks full duplex, so it drives no transceiver. What of the contract it leaves out: a self-test, and more than
- * TICKS_MAX ticks of memory for a frame, which no good TICKS needs.
+ * It is full duplex, so it drives no transceiver. It has no self-test, and accepts at most TICKS_MAX ticks per frame, which is
+ * enough for every valid TICKS.
  */
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -32,10 +32,10 @@
 #define TICKS_MAX 32
 
 #if 2 + TICKS_MAX * CHANNELS > BODY_KEPT
-#error "a frame of ticks is longer than what is kept of one: BODY_KEPT in framed_line.h"
+#error "a frame of ticks exceeds the buffer: increase BODY_KEPT in framed_line.h"
 #endif
 
-/* From a slot's match to STEP's rise: more than all that can come before it. */
+/* From a slot's match to the rise of STEP: longer than all possible delays. */
 #define EDGE_CYCLES 400
 #define PULSE_CYCLES 160
 
@@ -49,7 +49,7 @@
 enum kind { TICKS = 1, ENABLE, DISABLE, STATUS, STOP, RESYNC, POSITIONS };
 enum answer { ACK = 0, BAD_SEQ, QUEUE_FULL, TOO_MANY_STEPS, BUSY, STOPPED, BAD_BODY, UNKNOWN_KIND };
 enum state { STATE_READY = 1, STATE_MOVING, STATE_STOPPED };
-/* Beside those of the line */
+/* In addition to those of the line */
 enum fault {
     QUEUE_OVERFLOW = 1 << 4,
     FAULT_TOO_MANY_STEPS = 1 << 5,
@@ -84,7 +84,7 @@ static uint8_t after(uint8_t place)
     return place + 1 == QUEUE ? 0 : place + 1;
 }
 
-/* Takes the tick at the head of the queue: its DIR lines change now, its first steps come EDGE_CYCLES after the match. */
+/* Starts the tick at the head of the queue: its DIR lines change now, its first steps EDGE_CYCLES after the match. */
 static void begin_tick(void)
 {
     uint8_t dirs = 0;
@@ -101,7 +101,7 @@ static void begin_tick(void)
     slot = 0;
 }
 
-/* After the last slot of a tick: whether another one follows. */
+/* After the last slot of a tick: returns whether another tick follows. */
 static bool next_tick(void)
 {
     ticks_done++;
@@ -121,7 +121,7 @@ ISR(TIMER1_COMPA_vect)
     if (slot == SLOTS && !next_tick())
         return;
     slot++;
-    /* Spread over the tick: a channel fires where its share of steps passes a whole one. */
+    /* Spread over the tick: a channel steps where its fraction of steps passes an integer. */
     uint8_t rises = 0;
     for (uint8_t i = 0; i < CHANNELS; i++) {
         phase[i] += steps[i];
@@ -141,7 +141,7 @@ ISR(TIMER1_COMPA_vect)
     PORTB &= ~STEPS;
 }
 
-/* Starts the first tick after a rest; its first match is at once. */
+/* Starts the first tick after an idle time; its first match is immediate. */
 static void start(void)
 {
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
@@ -156,7 +156,7 @@ static void start(void)
     }
 }
 
-/* Emergency: no current and no step, at once. */
+/* Emergency stop: immediately no current and no step. */
 static void stop(void)
 {
     ATOMIC_BLOCK(ATOMIC_RESTORESTATE)
@@ -194,16 +194,16 @@ static void reply(uint8_t kind, enum answer answer)
     line_send(frame, at - frame);
 }
 
-/* ---- what frames do ---- */
+/* ---- execution of frames ---- */
 
-/* Ticks are queued all or none; in this order it is judged. */
+/* Queues all ticks or none; the checks are in order of precedence. */
 static enum answer take_ticks(const uint8_t *body, uint16_t length)
 {
     uint8_t seq = body[0], count = body[1];
     if (length < 2 || count == 0 || count > TICKS_MAX || length != 2 + (uint16_t)count * CHANNELS)
         return BAD_BODY;
     if (has_accepted && seq == (uint8_t)(expected_seq - 1))
-        return ACK; /* The host did not hear the reply. */
+        return ACK; /* The host did not receive the reply. */
     if (seq != expected_seq) {
         fault(FAULT_BAD_SEQ);
         return BAD_SEQ;
@@ -216,7 +216,7 @@ static enum answer take_ticks(const uint8_t *body, uint16_t length)
             fault(FAULT_TOO_MANY_STEPS);
             return TOO_MANY_STEPS;
         }
-    /* The interrupt only ever makes room. */
+    /* The interrupt only frees places. */
     if (QUEUE - queued < count) {
         fault(QUEUE_OVERFLOW);
         return QUEUE_FULL;
@@ -276,7 +276,7 @@ int main(void)
 {
     PORTB = EN;
     DDRB = STEPS | DIRS | EN;
-    /* Timer1 counts cycles and begins again at each match. */
+    /* Timer1 counts cycles and restarts at each match. */
     OCR1A = SLOT_CYCLES - 1;
     TCCR1B = _BV(WGM12) | _BV(CS10);
     line_begin();

@@ -1,12 +1,12 @@
 /*
- * Runs a program of this folder in simavr, in real time, with its UART on a pseudo-terminal: a board on a desk, but for the
- * board. A program for the machine that it runs on, not for the chip.
+ * Runs a program of this folder in simavr, in real time, with its UART on a pseudo-terminal. It replaces a board, and runs
+ * on a PC, not on the chip.
  *
- *   uart_on_pty PROGRAM.elf BAUD      prints pty:PATH, and runs until it is told to end, or until who had the port open
- *                                     has closed it
+ *   uart_on_pty PROGRAM.elf BAUD      prints pty:PATH, and runs until a signal, or until the program at the other end
+ *                                     closes the pseudo-terminal
  *
- * The pins that the program asks for are recorded (AVR_MCU_VCD_FILE). Where this machine is too slow, by more than LAG_US,
- * simulated time is late for good, as the clock of `stepscope serve` is set back: nothing is made up for in a hurry.
+ * The pins selected by the program are recorded (AVR_MCU_VCD_FILE). If this machine is late by more than LAG_US, the
+ * simulated time stays late, like the clock of `stepscope serve` after a set-back: it never catches up.
  */
 #define _GNU_SOURCE
 #include <errno.h>
@@ -48,7 +48,7 @@ static void fail(const char *what)
     exit(1);
 }
 
-/* A pseudo-terminal whose other end is raw; of this one reads and writes never wait. */
+/* A pseudo-terminal whose other end is raw; reads and writes of this end never block. */
 static void open_port(void)
 {
     struct termios raw;
@@ -62,7 +62,7 @@ static void open_port(void)
     fflush(stdout);
 }
 
-/* The chip sends a byte. One that nobody reads is gone, as on a wire. */
+/* The chip sends a byte. If nobody reads it, it is lost, as on a wire. */
 static void chip_sends(avr_irq_t *irq, uint32_t value, void *param)
 {
     (void)irq, (void)param;
@@ -83,7 +83,7 @@ static void chip_is_full(avr_irq_t *irq, uint32_t value, void *param)
     is_full = true;
 }
 
-/* A byte's time is over: the chip hears the next one. */
+/* The time of a byte has passed: the chip receives the next one. */
 static avr_cycle_count_t chip_hears(avr_t *avr, avr_cycle_count_t when, void *param)
 {
     (void)avr, (void)param;
@@ -93,7 +93,7 @@ static avr_cycle_count_t chip_hears(avr_t *avr, avr_cycle_count_t when, void *pa
         was_open = true;
         avr_raise_irq(uart_input, byte);
     } else if (count < 0 && errno == EIO) {
-        /* Nobody has the other end open. */
+        /* No program has the other end open. */
         has_gone = was_open;
     }
     return when + byte_cycles;
@@ -101,7 +101,7 @@ static avr_cycle_count_t chip_hears(avr_t *avr, avr_cycle_count_t when, void *pa
 
 static void connect(avr_t *avr)
 {
-    /* The chip's bytes are no lines for the console, and it may look at its registers as often as it likes. */
+    /* Do not print the chip's bytes on the console, and accept frequent reads of its registers. */
     uint32_t flags = 0;
     avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
     avr_irq_t *irq = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT);
@@ -112,7 +112,7 @@ static void connect(avr_t *avr)
     avr_cycle_timer_register(avr, byte_cycles, chip_hears, NULL);
 }
 
-/* The chip sleeps: that is for `keep_pace` to wait. */
+/* The chip sleeps: `keep_pace` waits. */
 static void sleeps(avr_t *avr, avr_cycle_count_t cycles)
 {
     (void)avr, (void)cycles;
@@ -125,7 +125,7 @@ static uint64_t now_us(void)
     return now.tv_sec * 1000000ull + now.tv_nsec / 1000;
 }
 
-/* Waits until the chip's time has come; the time at which its cycle 0 was. */
+/* Waits until real time has reached the chip's time; returns the time of its cycle 0. */
 static uint64_t keep_pace(avr_t *avr, uint64_t began_us)
 {
     uint64_t due = began_us + avr_cycles_to_usec(avr, avr->cycle), now = now_us();
@@ -163,7 +163,7 @@ int main(int count, char **arguments)
     signal(SIGTERM, end);
     open_port();
     connect(avr);
-    /* Half a millisecond at a time. */
+    /* In steps of half a millisecond. */
     avr_cycle_count_t look = 0, step = avr->frequency / 2000;
     uint64_t began_us = now_us();
     int state = cpu_Running;
@@ -174,7 +174,7 @@ int main(int count, char **arguments)
             began_us = keep_pace(avr, began_us);
         }
     }
-    /* Writes what is left of the recording. */
+    /* Writes the rest of the recording. */
     avr_terminate(avr);
     return state == cpu_Crashed;
 }
