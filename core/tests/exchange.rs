@@ -1,4 +1,4 @@
-//! What a run exports, taken in again.
+//! Files that a run exports can be imported again.
 
 use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
@@ -20,7 +20,7 @@ fn recorded(scenario: &Scenario) -> (Experiment, Run, StoredRun) {
     (experiment, run, recording)
 }
 
-/// The table of the first controller's packets, as a file.
+/// The packet table of the first controller, as a file.
 fn table_of(experiment: &Experiment, run: &Run, recording: &StoredRun) -> String {
     let table = PacketTable::new(experiment, run, 0, &recording.packets);
     let mut text = String::new();
@@ -29,7 +29,7 @@ fn table_of(experiment: &Experiment, run: &Run, recording: &StoredRun) -> String
     text
 }
 
-/// Where bytes follow one another without pauses and nothing disturbs the line, the table holds all.
+/// If bytes follow each other without pauses or noise, the table contains all of them.
 #[test]
 fn a_packet_table_reproduces_the_trace() {
     for id in ["song-2021-plateau", "patent-2019-sixteen-motors", "patent-2019-addressed"] {
@@ -43,7 +43,7 @@ fn a_packet_table_reproduces_the_trace() {
     }
 }
 
-/// Replies of other controllers are heard like frames; they are none of the host's, however noise spoils them.
+/// Replies of other controllers look like frames, but are not sent by the host, even with noise.
 #[test]
 fn a_packet_table_of_a_shared_line_has_only_the_hosts_sends() {
     let preset = PRESETS.iter().find(|preset| preset.id == "four-controllers-framed").expect("a preset");
@@ -59,7 +59,7 @@ fn a_packet_table_of_a_shared_line_has_only_the_hosts_sends() {
             let again = script.sends.iter().map(|send| (send.start_cycle, send.bytes.0.as_slice()));
             assert_eq!(again.collect::<Vec<_>>(), sent);
         }
-        // A bit may become a delimiter and cut a frame, or be one no more and join two: each still begins in the host's.
+        // A flipped bit may split a frame or join two. Each part begins in a send of the host.
         let is_hosts = |send: &ScriptedSend| {
             let last = run.schedule().last_at_or_before(Instant(send.start_cycle));
             last.is_some_and(|last| {

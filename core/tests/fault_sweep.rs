@@ -1,5 +1,5 @@
-//! Issue "Faults", in its short form: seeds of faults with and without the framed protocol. The long
-//! form is `stepscope faults --seeds 100000`.
+//! A short fault sweep: seeds of faults with and without the framed protocol. The long form is
+//! `stepscope faults --seeds 100000`.
 
 use stepscope_core::{
     peripheral::config::Protocol,
@@ -23,11 +23,11 @@ fn framed_ticks_are_executed_exactly_once_despite_line_faults() {
     let sweep = sweep(Protocol::Framed);
     let tally = run(&sweep, 300);
     assert_eq!((tally.seeds, tally.wrong_seeds, tally.is_wrong()), (300, 0, false), "{tally:?}");
-    // A host that may repeat gets there, but where no byte does; and it gives up for no other reason.
+    // A host that may repeat completes its job unless no byte passes, and gives up for no other reason.
     assert_eq!((tally.given_up_in_reach, tally.stuck, tally.cut), (0, 0, 0), "{tally:?}");
     assert_eq!(tally.executed + tally.unreached, tally.commanded, "{tally:?}");
     assert_eq!(tally.commanded % 300, 0);
-    // The faults bite, all of them.
+    // Every kind of fault has an effect.
     for count in [
         tally.repeated,
         tally.crashes,
@@ -59,7 +59,7 @@ fn a_line_without_faults_executes_all_ticks_in_both_protocols() {
             let noise = Noise { seed: scenario.line.noise.seed, ..Noise::default() };
             scenario.line.noise == noise && scenario.line.receiver_baud.is_none()
         };
-        // A mixture may draw no noise at all.
+        // A mixture may have no noise.
         let seed = (0..10_000).find(|&seed| is_quiet(&sweep.scenario(seed))).expect("there is one");
         sweep.run(seed).expect("no problems")
     };
@@ -69,7 +69,7 @@ fn a_line_without_faults_executes_all_ticks_in_both_protocols() {
     }
 }
 
-/// A seed stands for a scenario that anyone can run.
+/// The scenario of a seed reproduces the seed.
 #[test]
 fn a_seeds_scenario_reproduces_itself() {
     let sweep = sweep(Protocol::Framed);

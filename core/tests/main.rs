@@ -1,4 +1,4 @@
-//! What the rooms come to together: one program of all these tests, so that it is linked once.
+//! Tests of several crates together, in one program so that it is linked once.
 #![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a test fails by panicking")]
 

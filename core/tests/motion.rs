@@ -1,4 +1,4 @@
-//! What holds for every motion, its ticks and its segments (DESIGN B1, B7, B8), over random axes.
+//! Properties of every motion, its ticks and its segments (DESIGN B1, B7, B8), for random axes.
 
 use crate::moves::{CLOCK_HZ, plan, ramp_shape, sane_move, short_move};
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ use stepscope_core::{
     },
 };
 
-/// Any number, with the absurd ones often.
+/// Any number, often an extreme one.
 fn number() -> impl Strategy<Value = f64> + Clone {
     prop_oneof![
         any::<f64>(),
@@ -46,7 +46,7 @@ fn number() -> impl Strategy<Value = f64> + Clone {
     ]
 }
 
-/// Anything that the types allow.
+/// Any value of the type.
 fn wild_move() -> impl Strategy<Value = Move> {
     let distance = number().prop_flat_map(|x| {
         prop::sample::select(vec![Distance::Steps(x), Distance::Millimeters(x), Distance::Degrees(x)])
@@ -133,7 +133,7 @@ fn wild_move() -> impl Strategy<Value = Move> {
     ]
 }
 
-/// The other way round.
+/// The mirror image.
 fn mirrored(given: &Move) -> Move {
     let back = |distance: &Distance| Distance::Steps(-distance.value());
     match given.clone() {
@@ -165,7 +165,7 @@ fn is_table(profile: &Profile) -> bool {
     matches!(profile, Profile::TrapezoidTable(_) | Profile::Staircase(_))
 }
 
-/// Whether a table to the left ends at `t`, but for the last digits of f64: its last step is due in that instant, so it
+/// Whether a table to the left ends at `t`, except for the last digits of f64: its last step is due at that time, so it
 /// belongs to the tick after it (B7).
 fn last_step_may_wait(plan: &AxisPlan, t: f64) -> bool {
     plan.moves().iter().any(|planned| {
@@ -187,7 +187,7 @@ proptest! {
         for (tick, count) in (1_u64..).zip(&counts) {
             made += count;
             let t = (tick * tick_cycles) as f64 / f64::from(CLOCK_HZ);
-            // A table's curve passes a step's place by a jump, on either side of which the digits of `t` may be.
+            // The curve of a table passes the position of a step by a jump; `t` may be on either side of it.
             let by_table = plan.moves().iter().any(|planned| is_table(&planned.profile));
             let most = if by_table { 0.5 + 1e-6 } else { 0.5 + 1e-9 };
             let error = |waiting: i64| plan.position(t) - (made - waiting) as f64;
@@ -195,7 +195,7 @@ proptest! {
             prop_assert!(error(0).abs() <= most || waits, "{} after tick {tick}", error(0));
         }
         prop_assert_eq!(made, plan.steps());
-        // The last tick is needed: the axis has not ended before it.
+        // The last tick is needed, because the axis ends in it.
         let before = ((counts.len() as u64 - 1) * tick_cycles) as f64 / f64::from(CLOCK_HZ);
         prop_assert!(before == 0.0 || before < plan.duration_s() || last_step_may_wait(&plan, before));
     }
@@ -223,7 +223,7 @@ proptest! {
     ) {
         let plans = [plan(moves), plan(vec![other])];
         let pulse = PulseTimes { width: Cycles(1), setup: Cycles(1), hold: Cycles(0) };
-        // A curve that crosses a half-integer with the very tip of its turn asks for a step and its return at once.
+        // If the extreme of a reversal just crosses a half-integer, a step and its return are due at once.
         let due: Vec<Vec<_>> = plans.iter().map(|plan| plan.due_steps(CLOCK_HZ).collect()).collect();
         let at_once = due.iter().flat_map(|due| due.windows(2)).any(|pair| {
             pair[0].right != pair[1].right && pair[1].cycle - pair[0].cycle < pulse.min_interval().0
@@ -271,8 +271,8 @@ proptest! {
             let t = (tick * tick_cycles) as f64 / f64::from(CLOCK_HZ);
             let x = forth.position(t);
             prop_assert_eq!(x, -back.position(t));
-            // R rounds a half up on both sides of 0, so exactly there the two differ by one; and so they do where a
-            // table ends, whose last step to the left waits for the next tick (B7).
+            // Halves round up on both sides of 0, so at exact halves the two differ by one. They also differ at the
+            // end of a table, whose last step to the left is in the next tick (B7).
             let is_half = (x - x.floor() - 0.5).abs() < 1e-6;
             let ends = last_step_may_wait(&forth, t) || last_step_may_wait(&back, t);
             let differ = right + left;

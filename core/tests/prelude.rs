@@ -1,4 +1,4 @@
-//! The prelude: its differences, and what may move to another thread.
+//! The prelude: first differences, and types that are `Send`.
 
 use std::{error::Error, thread};
 use stepscope_core::motion::{
@@ -35,7 +35,7 @@ fn an_experiment_runs_in_another_thread() {
     assert_eq!(digest.join().expect("no panic"), here.digest());
 }
 
-/// The two ways to step times have one error.
+/// Both functions for step times return the same error.
 fn steps_of_an_axis(axis: &Axis) -> Result<Vec<ScheduledStep>, Problems> {
     stepscope_core::run(&Scenario::default())?;
     Ok(plan_axis(axis, "axis")?.due_steps(16_000_000).collect())

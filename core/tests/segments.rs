@@ -1,5 +1,5 @@
-//! The segment engine against DESIGN A8 written down as plainly as it goes: every edge of every
-//! channel into one list, sorted. And all ways through the engine against each other (DESIGN A2).
+//! The segment engine compared with a plain implementation of DESIGN A8, which lists and sorts all edges of all channels. All
+//! speeds and slices of the engine are compared with each other (DESIGN A2), too.
 
 use proptest::prelude::*;
 use std::{collections::BTreeMap, sync::Arc};
@@ -10,12 +10,12 @@ use stepscope_core::peripheral::{
     units::{Cycles, Instant},
 };
 
-/// Bits of the signals that an engine never moves.
+/// Bits of the signals that an engine never changes.
 const STILL: u64 = Levels::EN | Levels::RX | Levels::TX;
 
-/// Trace and positions of A8, step by step.
+/// Trace and positions by A8, step by step.
 fn model(pulse: PulseTimes, lists: &[SegmentList]) -> (Vec<Record>, [i32; 16]) {
-    // Which bits change in a cycle; a bit never changes twice in one.
+    // The bits that change in a cycle; no bit changes twice in a cycle.
     let mut changes: BTreeMap<u64, u64> = BTreeMap::new();
     let mut positions = [0; 16];
     for (channel, list) in lists.iter().enumerate() {
@@ -54,8 +54,8 @@ fn model(pulse: PulseTimes, lists: &[SegmentList]) -> (Vec<Record>, [i32; 16]) {
     (std::iter::once(first).chain(rest).collect(), positions)
 }
 
-/// Lists of some hundred steps, most of which keep the rules: intervals from the least on, whole
-/// cycles and fractions, growing and shrinking.
+/// Lists of some hundred steps, most of them valid: intervals from the minimum on, whole cycles and
+/// fractions, growing and shrinking.
 fn lists() -> impl Strategy<Value = (PulseTimes, Vec<SegmentList>)> {
     let cycles = |range| Strategy::prop_map(range, Cycles);
     let pulse = (cycles(1..=6_u64), cycles(0..=4_u64), cycles(0..=4_u64))
@@ -66,7 +66,7 @@ fn lists() -> impl Strategy<Value = (PulseTimes, Vec<SegmentList>)> {
         let spare = (prop_oneof![2 => Just(0), 2 => 0..3_u64, 1 => 0..400_u64], fraction.clone());
         let steps = (1..=12_u32, spare, prop_oneof![Just(0), -0x4000..0x4000_i64, -0x4_0000..0x4_0000_i64]);
         let steps = (steps, any::<bool>()).prop_map(move |((count, (whole, fraction), add), right)| {
-            // A shrinking interval is the least one at the end.
+            // A shrinking interval ends at the minimum.
             let room = if add < 0 { u64::from(count - 1) * add.unsigned_abs() } else { 0 };
             Segment::Steps { count, interval: least + (whole << 16) + fraction + room, add, right }
         });
@@ -79,7 +79,7 @@ fn lists() -> impl Strategy<Value = (PulseTimes, Vec<SegmentList>)> {
     })
 }
 
-/// A sink that asks for a pause after so many records.
+/// A sink that requests a pause after a number of records.
 struct Slice<'a>(&'a mut Vec<Record>, usize);
 
 impl Sink for Slice<'_> {
@@ -153,7 +153,7 @@ proptest! {
 }
 
 proptest! {
-    /// PLANT F7, in every place of a pulse, of a turn and of a list.
+    /// PLANT F7: an overload at any time of a pulse, a reversal or a list.
     #[test]
     fn an_overload_lowers_all_signals_but_dir_and_ends_the_steps(
         (pulse, lists) in lists(),

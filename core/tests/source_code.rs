@@ -1,6 +1,6 @@
-//! Step tables as source code: compiled and run they give the steps that the table has (DESIGN Part D).
+//! Step tables as source code: compiled and run, they give the steps of the table (DESIGN Part D).
 //!
-//! A C compiler is looked for as `cc`, or as `STEPSCOPE_CC` names it; Rust's own linker is one on most systems.
+//! The C compiler is `cc`, or the value of `STEPSCOPE_CC`; on most systems Rust's linker is a C compiler, too.
 
 use crate::moves::{CLOCK_HZ, plan};
 use std::{env, fmt::Write, fs, path::PathBuf, process::Command};
@@ -80,14 +80,14 @@ fn main() {
 }
 "#;
 
-/// Stands for avr-libc's header: program memory is memory.
+/// Replaces avr-libc's header: program memory is normal memory.
 const PGMSPACE: &str = r#"#include <string.h>
 #define PROGMEM __attribute__((aligned(8)))
 static inline uint16_t pgm_read_word(const void *at) { uint16_t n; memcpy(&n, at, sizeof n); return n; }
 static inline uint32_t pgm_read_dword(const void *at) { uint32_t n; memcpy(&n, at, sizeof n); return n; }
 "#;
 
-/// A motion with turns, rests and curves.
+/// A motion with reversals, pauses and curves.
 fn table(form: Form, format: EntryFormat) -> Stored {
     let sine = SineSegments { amplitude: Distance::Steps(200.0), period_s: 0.2, ..SineSegments::default() };
     let moves = vec![
@@ -121,7 +121,7 @@ fn tables() -> Vec<(String, Stored)> {
     tables
 }
 
-/// The steps as the segment engine has them: next >> 16 after each interval (A8), from the list's start.
+/// The steps of the segment engine: next >> 16 after each interval (A8), from the start of the list.
 fn expected(table: &Stored) -> String {
     let (mut next, mut lines) = (0_u64, String::new());
     for segment in &table.list.segments {
@@ -167,7 +167,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Compiles, runs, and compares; gives what the program says of its size.
+/// Compiles, runs and compares; returns the size that the program prints.
 fn compare(name: &str, mut compiler: Command, program: &PathBuf, table: &Stored) -> String {
     let output = compiler.output().unwrap_or_else(|error| panic!("{compiler:?}: {error}"));
     let said = String::from_utf8_lossy(&output.stderr);
@@ -203,7 +203,7 @@ fn a_table_compiled_as_c_and_for_avr_has_its_steps() {
             let time = if table.format == EntryFormat::Q16 { "-DTIME=uint64_t" } else { "-DTIME=uint32_t" };
             let mut call = Command::new(&compiler);
             call.args(["-std=c11", time]).args(STRICT);
-            // The walk of program memory, by the reads above.
+            // The walker of program memory, with the reads above.
             call.args(is_avr.then_some("-D__AVR__"))
                 .arg("-I")
                 .arg(&folder)
@@ -229,7 +229,7 @@ fn the_walker_is_c99_and_cpp11() {
         call.args(["-DTIME=uint64_t", "-fsyntax-only", "-x", language])
             .arg(format!("-std={standard}"))
             .args(STRICT);
-        // Without __AVR__, a table for an AVR is one for this machine.
+        // Without __AVR__, a table for an AVR compiles for this machine.
         let output = call.arg("-I").arg(&folder).arg(folder.join("walk.c")).output();
         let output = output.unwrap_or_else(|error| panic!("{compiler}: {error}; install gcc and g++"));
         assert!(output.status.success(), "{standard}: {}", String::from_utf8_lossy(&output.stderr));
@@ -250,7 +250,7 @@ fn a_table_read_back_matches_the_plan() {
         for language in [Language::C, Language::Avr] {
             let [mut found]: [_; 1] = read_c(&source(&table, language)).unwrap().try_into().unwrap();
             assert_eq!(found.entries, table.entries, "{name}");
-            // The steps of the list itself: no error at all.
+            // The steps of the list itself, without an error.
             assert_eq!(found.check(due(), CLOCK_HZ), Ok(0), "{name}");
             let last = found.entries.last_mut().unwrap();
             last.interval += 1 << (table.format.fraction_bits() + 20);
@@ -268,7 +268,7 @@ fn a_table_compiled_as_rust_has_its_steps() {
         let (file, program) = (folder.join("table.rs"), folder.join("table"));
         fs::write(&file, source(&table, Language::Rust) + WALK_RUST).unwrap();
         let mut call = Command::new(&rustc);
-        // The constants that the walk does not need are no fault of the table.
+        // Constants that the walker does not use are no error of the table.
         call.args(["--edition", "2024", "-D", "warnings", "-A", "dead_code"])
             .arg(&file)
             .arg("-o")

@@ -1,4 +1,4 @@
-//! Spectra of whole scenarios, from their pulses at the STEP lines (DESIGN B5, Part D).
+//! Spectra of complete scenarios, computed from their pulses (DESIGN B5, Part D).
 
 use stepscope_core::inspect::trace::stored_run::StoredRun;
 use stepscope_core::{
@@ -11,8 +11,8 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// Distortion of the position that the pulses of a scenario's first axis make, in per cent, and
-/// where they end.
+/// Distortion of position of the pulses of a scenario's first axis, in percent, and their final
+/// position.
 fn made_distortion(json: &str) -> (f64, i32) {
     let experiment = Experiment::from_json(json).unwrap();
     let mut recording = StoredRun::default();
@@ -41,7 +41,7 @@ fn a_pause_of_part_of_a_tick_removes_no_pulse_from_the_period() {
             r#"{{"source":{{"motion":{{"axes":[{{"moves":[{{"dwell":{{"duration_s":{pause_s}}}}},{sine}]}}]}}}}}}"#
         );
         let (distortion, end) = made_distortion(&json);
-        // Pulses come with their ticks, so where these lie moves the last digits.
+        // Pulses are placed in ticks, so the alignment of the ticks changes the last digits.
         assert!((distortion - 0.262).abs() < 1e-3, "{pause_s} s: {distortion} %");
         assert_eq!(end, 0, "{pause_s} s: as many to the right as to the left");
     }
@@ -56,7 +56,7 @@ fn the_spectrum_of_segments_has_every_step_at_any_tick() {
         let one = r#"{"constant":{"distance":{"steps":-7},"speed":{"steps_s":9000}}}"#;
         format!(r#"{one},{sine},{one}"#)
     };
-    // Ticks of 3.1 ms, of 500 us, and of 6 us, within which nothing cancels.
+    // Ticks of 3.1 ms, of 500 us, and of 6 us, in which no steps cancel.
     for bus in [r#""bus":{}"#, r#""bus":{"slots":16}"#, r#""bus":{"slots":1,"step_period_cycles":100}"#] {
         for kind in ["sine", "sine_segments"] {
             for (period_s, periods) in [("0.0031", 1), ("0.001", 4)] {

@@ -1,4 +1,4 @@
-//! What holds for every stored form of a motion's step times (DESIGN B8), through the segment engine (A8).
+//! Properties of every form of a motion's step table (DESIGN B8), run by the segment engine (A8).
 
 use crate::moves::{CLOCK_HZ, plan, sane_move};
 use proptest::prelude::*;
@@ -45,7 +45,7 @@ fn kept(moves: Vec<Move>, form: Form, format: EntryFormat) -> Stored {
     stored(&plan(moves), form, format, PULSE, CLOCK_HZ).unwrap_or_else(|cause| panic!("{cause}"))
 }
 
-/// Cycles and ways of the steps that the segment engine makes of a list, from its start.
+/// Cycles and directions of the steps that the segment engine makes of a list, from its start.
 fn run(list: &SegmentList) -> Vec<(u64, bool)> {
     let checked = CheckedSegments::new(PULSE, vec![list.clone()], 1);
     let checked = checked.unwrap_or_else(|refused| panic!("{refused:?}"));
@@ -85,7 +85,7 @@ proptest! {
     ) {
         let plan = plan(moves);
         let due: Vec<ScheduledStep> = plan.due_steps(CLOCK_HZ).collect();
-        // The search for the fewest takes the longer the wider the windows are.
+        // The search for the fewest entries takes longer with wider windows.
         let narrow = tolerance.cycles.0 << format.fraction_bits() < 40;
         let form = if narrow { Form::Compressed(tolerance) } else { Form::Quick(tolerance) };
         let made = stored(&plan, form, format, PULSE, CLOCK_HZ);
@@ -107,7 +107,7 @@ proptest! {
         }
         prop_assert_eq!(made.error.max_cycles, greatest);
         prop_assert_eq!(Some(made.error), TimingError::of(&made.list, due));
-        // As it stands in the format, an entry's times are the same.
+        // Encoded in the format, an entry has the same times.
         prop_assert_eq!(walked(&made), found);
     }
 
@@ -127,7 +127,7 @@ proptest! {
                     prop_assert!(form != Form::Exact || made.error.max_cycles == 0);
                     prop_assert_eq!(walked(&made), found);
                 }
-                // Only what has no table of its own is refused.
+                // Only moves without a table of their own are refused.
                 Err(cause) => {
                     let refused = form == Form::Document && matches!(cause, Cause::Value(ValueError::Conflict { .. }));
                     prop_assert!(refused, "{}", cause);
@@ -164,7 +164,7 @@ proptest! {
     }
 }
 
-/// The steps of a table's entries, as the comment of its source code says how to walk them.
+/// The steps of a table's entries, walked as the comment of its source code describes.
 fn walked(table: &Stored) -> Vec<(u64, bool)> {
     let (mut time, mut right, mut made) = (0_u64, false, Vec::new());
     for entry in &table.entries {
@@ -182,7 +182,7 @@ fn walked(table: &Stored) -> Vec<(u64, bool)> {
     made
 }
 
-/// 10^6 steps at 200 000 steps/s and 200 000 steps/s^2: Klipper's step compression makes about 1289 entries of them.
+/// 10^6 steps at 200 000 steps/s and 200 000 steps/s^2, which Klipper's step compression reduces to about 1289 entries.
 #[test]
 fn a_long_trapezoid_takes_fewer_entries_than_klippers_compression() {
     let ramp = vec![trapezoid(1e6, 1.0, 200_000.0, 200_000.0, TrapezoidMethod::Exact)];
@@ -192,7 +192,7 @@ fn a_long_trapezoid_takes_fewer_entries_than_klippers_compression() {
         (EntryFormat::Q16, None, 60),
         (EntryFormat::Q8, None, 160),
         (EntryFormat::TICKS, None, 260),
-        // Klipper also keeps a step within half an interval.
+        // Klipper also limits the error of a step to half an interval.
         (EntryFormat::Q16, half, 80),
         (EntryFormat::TICKS, half, 800),
     ];
@@ -205,7 +205,7 @@ fn a_long_trapezoid_takes_fewer_entries_than_klippers_compression() {
     }
 }
 
-/// Due where s = k - 1/2 at 7/3 of a 1000th of the clock: nothing adds up over 10^8 steps.
+/// Due where s = k - 1/2 at 7/3 of a 1000th of the clock: no error accumulates over 10^8 steps.
 #[test]
 fn a_hundred_million_steps_do_not_drift() {
     let count = 100_000_000_u64;
@@ -239,9 +239,9 @@ fn tables_of_papers_have_their_sizes_and_errors() {
     let sine =
         Move::SineSegments(SineSegments { amplitude: Distance::Steps(1000.0), ..SineSegments::default() });
     let q16 = EntryFormat::Q16;
-    // Move, format, entries, the document's bytes, greatest error.
+    // Move, format, entries, the paper's bytes, maximum error.
     let rows = [
-        // 250 to 1200 steps/s at 9000 steps/s^2: 76 rows, whole ticks of a timer of which the clock is a multiple.
+        // 250 to 1200 steps/s at 9000 steps/s^2: 76 rows in whole ticks of a timer whose clock divides the clock.
         (trapezoid(300.0, 250.0, 1200.0, 9000.0, TrapezoidMethod::Table), q16, 0),
         (trapezoid(300.0, 250.0, 1200.0, 9000.0, TrapezoidMethod::Table), EntryFormat::TICKS, 0),
         (staircase.clone(), q16, 1),
@@ -253,7 +253,7 @@ fn tables_of_papers_have_their_sizes_and_errors() {
         assert!(made.error.max_cycles <= greatest, "{given:?}: {:?}", made.error);
         assert!(made.document_bytes.is_some_and(|bytes| bytes <= made.bytes()), "{given:?}");
     }
-    // 16 MHz over a whole rate is mostly no whole number: half a cycle a step adds up.
+    // 16 MHz divided by a whole rate is rarely an integer: the error grows by half a cycle per step.
     let coarse = kept(vec![staircase], Form::Document, EntryFormat::TICKS);
     assert!(coarse.error.max_cycles > 100, "{:?}", coarse.error);
     // Six segments of six bytes.

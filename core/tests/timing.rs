@@ -1,5 +1,5 @@
-//! The timing check against brute force: every time looked for cycle by cycle in random traces, and
-//! held against its rule in exact arithmetic.
+//! The timing check compared with brute force, which measures every time cycle by cycle in random traces and
+//! compares it with its rule in exact arithmetic.
 
 use proptest::prelude::*;
 use stepscope_core::{
@@ -17,7 +17,7 @@ use stepscope_core::{
 
 const CHANNELS: [u8; 3] = [0, 7, 15];
 
-/// Pauses and what changes after each.
+/// Pauses and the changes after each.
 fn traces() -> impl Strategy<Value = Vec<Record>> {
     let signals = CHANNELS.iter().flat_map(|channel| [*channel, channel + 16]).chain([32, 33]);
     let toggled = prop::collection::vec(prop::sample::select(signals.collect::<Vec<u8>>()), 1..4);
@@ -48,10 +48,10 @@ fn rules() -> impl Strategy<Value = TimingRules> {
     )
 }
 
-/// A time: channel, rule, the cycle that ends it, its length.
+/// A time: channel, rule, the cycle at its end, its length.
 type Time = (u8, Rule, u64, u64);
 
-/// All times of a trace, in the order in which the check reports.
+/// All times of a trace, in the order of the check's report.
 fn times(trace: &[Record]) -> Vec<Time> {
     let end = trace.last().map_or(0, |record| record.cycle.0);
     let levels: Vec<u64> = (0..=end)
@@ -129,7 +129,7 @@ proptest! {
     }
 }
 
-/// What the pulses of a scenario come to under its own driver's rules: violations of each rule.
+/// Violations of each rule of its own driver by the pulses of a scenario.
 fn violations(scenario: &Scenario) -> [u64; 5] {
     let rules = scenario.driver_timing.as_ref().map(drivers::rules).unwrap_or_default();
     let mut check = TimingCheck::new(&rules, scenario.clock_hz, 0);
@@ -143,7 +143,7 @@ fn violations(scenario: &Scenario) -> [u64; 5] {
 fn the_broken_preset_has_the_violations_and_fixes_of_its_note() {
     let preset = PRESETS.iter().find(|preset| preset.id == "driver-timing-broken").expect("it is there");
     let mut scenario = preset.scenario();
-    // 128 pulses, three turns: right from reset, left, right.
+    // 128 pulses, three changes of direction: right from reset, left, right.
     assert_eq!(violations(&scenario), [128, 0, 3, 0, 0]);
     scenario.bus.pulse_width_cycles = 31;
     scenario.bus.dir_setup_cycles = 10;

@@ -40,7 +40,7 @@ test("a run is offered as signals, tables and a line script", () => {
   assert.match(statusOf(update(ran(), { type: "edit", path: "x", value: 1 })), /earlier experiment/);
 });
 
-test("files of a part and of one of several controllers say so in their names", () => {
+test("names of files state their part and their controller", () => {
   const two = ran({ controllers: [controller, { ...controller, violations: 3 }] });
   const second = update(two, { type: "controller", controller: 1 });
   const found = names(second, { start: 10, end: 20 });
@@ -56,7 +56,7 @@ test("segments have lists in place of ticks, and a panel has neither", () => {
   assert.ok(!panel.some((name) => /-(segments|ticks)\.csv$|-line\.json$/.test(name)));
 });
 
-test("what is between the cursors can be saved alone", () => {
+test("the part between the cursors can be saved separately", () => {
   assert.equal(between({ cursors: { a: 5, b: 5 } }), null);
   const span = between({ cursors: { a: 750, b: 250 } });
   assert.deepEqual(span, { start: 250, end: 750 });

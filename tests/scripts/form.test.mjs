@@ -10,7 +10,7 @@ import { convert, isList, isSame, meaning, print, read } from "../../web/form/va
 const state = { scenario: { clock_hz: 16_000_000 }, derived: null };
 const value = (text, field, before) => read(text, { key: "x", ...field }, state, before);
 
-test("a text is read by the kind of its field", () => {
+test("a text is parsed by the kind of its field", () => {
   const rows = [
     ["true", { kind: "choice" }, true],
     ["2", { kind: "choice" }, 2],
@@ -46,7 +46,7 @@ test("a quantity may be empty", () => {
   assert.equal(print({ mm_s: 250 }, field), "250");
 });
 
-test("a value is printed as it can be typed again", () => {
+test("a printed value can be typed again", () => {
   assert.equal(print("810a", { kind: "hex" }), "81 0a");
   assert.equal(print(["810a", "ff"], { kind: "lines" }), "81 0a\nff");
   assert.equal(print({ mm: 5 }, { kind: "quantity" }), "5");
@@ -94,7 +94,7 @@ test("a problem is assigned to its field, else to its part, else to the list", (
   assert.deepEqual(places.others, [problems[4]]);
 });
 
-test("a draft replaces the problems of the value before", () => {
+test("a draft replaces the problems of the previous value", () => {
   const validation = {
     problems: [
       { path: "a.b", message: "old" },
@@ -112,7 +112,7 @@ test("a draft replaces the problems of the value before", () => {
 // The linter takes an object that is written with `then` for a promise.
 const wait = (number) => JSON.parse(`{"wait":{"then":${number}}}`);
 
-test("groups that name other groups still name them after a change", () => {
+test("references between groups follow changes", () => {
   const program = [{ move: {} }, { jump: { to: 4 } }, { repeat: { first: 1 } }, wait(3)];
   assert.deepEqual(withoutGroup(program, 2), [{ move: {} }, { jump: { to: 3 } }, wait(3)]);
   assert.deepEqual(withoutGroup(program, 3)[1], { jump: { to: 3 } });
@@ -137,7 +137,7 @@ const scenario = {
   plant: null,
 };
 
-test("the form is built anew for another shape, not for other values", () => {
+test("the form is rebuilt for another structure, not for other values", () => {
   const other = structuredClone(scenario);
   other.source.motion.axes[0].moves[0].cosine.duration_s = 2;
   assert.equal(shapeOf(other), shapeOf(scenario));
@@ -146,7 +146,7 @@ test("the form is built anew for another shape, not for other values", () => {
   assert.notEqual(shapeOf({ ...scenario, plant: { motors: [] } }), shapeOf(scenario));
 });
 
-test("remedies load once something is wrong or made to go wrong", () => {
+test("remedies load after the first problem or deliberate error", () => {
   const fine = { validation: { problems: [] }, result: null, scenario };
   assert.equal(needsRemedies(fine), false);
   assert.ok(needsRemedies({ ...fine, validation: { problems: [{}] } }));

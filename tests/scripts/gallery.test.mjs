@@ -22,14 +22,14 @@ const presets = [
 const entries = entriesOf(presets, [{ title: "Rig", note: "" }]);
 const ids = (groups) => groups.map(({ title, entries }) => [title, ...entries.map(({ id }) => id)]);
 
-test("one line is the first sentence, which a number does not end", () => {
+test("the line is the first sentence; a number does not end it", () => {
   assert.deepEqual(
     entries.slice(1, 5).map(({ text }) => text),
     ["One.", "Noise of 1.5 % on the line.", "It stalls", "A DRV8825."],
   );
 });
 
-test("saved experiments come first, recordings last and say that they are imported", () => {
+test("saved experiments come first, recordings last, labeled as imported", () => {
   assert.equal(entries[0].id, "own:Rig");
   const recordings = entries.slice(-2);
   assert.ok(recordings.every(({ task, text }) => task === "Recordings" && text.includes("import dialog")));

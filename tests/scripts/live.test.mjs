@@ -55,7 +55,7 @@ test("a device that has not replied got no tick and stays settled", () => {
   assert.equal(stream.device.unsettled, null);
 });
 
-test("STOP goes as the unsettled stream went, whatever the experiment is now", () => {
+test("STOP uses the settings of the unsettled stream, not of the experiment", () => {
   const earlier = { json: "old", title: "old", baud: 9600, raw: false, port: null };
   const next = session({ unsettled: earlier });
   next.json = "new";
@@ -64,7 +64,7 @@ test("STOP goes as the unsettled stream went, whatever the experiment is now", (
   assert.deepEqual([next.sent.json, next.sent.baud, next.sent.port], ["old", 9600, PORT]);
 });
 
-test("a press of STOP is kept until it has reached the device", () => {
+test("a press of STOP stays pending until it has reached the device", () => {
   const stream = streaming();
   assert.equal(stream.pressStop().action, "stop");
   assert.ok(stream.stopPressed);
@@ -78,7 +78,7 @@ test("a press of STOP is kept until it has reached the device", () => {
   assert.ok(late.stopPressed);
 });
 
-test("a confirmed STOP or a verified end needs no further STOP", () => {
+test("a confirmed STOP or a verified end needs no other STOP", () => {
   for (const more of [{}, { verified: false, stopped: true, stop_acknowledged: true }]) {
     const stream = streaming();
     stream.pressStop();
@@ -87,7 +87,7 @@ test("a confirmed STOP or a verified end needs no further STOP", () => {
   }
 });
 
-test("raw packets can only be sent no more", () => {
+test("STOP of raw packets only ends the sending", () => {
   const raw = session({ found: facts({ stream: role("", { lead: 2, lead_ms: 1 }) }) });
   raw.begin("stream", false, "");
   assert.ok(raw.sent.raw);
@@ -104,7 +104,7 @@ test("there is nothing to stop while serving, or without a port", () => {
   assert.equal(session({ port: null }).pressStop().action, "none");
 });
 
-test("a start beside an unsettled device needs a second press", () => {
+test("a start with an unsettled device needs a second press", () => {
   const next = session({ unsettled: { baud: 1 } });
   assert.match(next.warning(), /press STOP first/);
   assert.equal(next.warning(), "");
@@ -113,7 +113,7 @@ test("a start beside an unsettled device needs a second press", () => {
   assert.equal(session().warning(), "");
 });
 
-test("a role that is impossible is not selected first, and only then", () => {
+test("an impossible role is replaced only at first", () => {
   const impossible = facts({ stream: role("no line") });
   const first = session({ found: null });
   assert.equal(first.setFacts(impossible), "serve");
@@ -147,7 +147,7 @@ test("start needs a port, an experiment that can be sent and an idle dialog", ()
   }
 });
 
-test("STOP is in reach while a device may move", () => {
+test("STOP is available while a device may move", () => {
   const { stop, close, aside } = controls(streaming(), { isInFront: false });
   assert.deepEqual([stop.hidden, stop.disabled, close.disabled, aside.hidden], [false, false, true, false]);
   assert.match(stop.title, /\(Esc\)/);
@@ -158,7 +158,7 @@ test("STOP is in reach while a device may move", () => {
   assert.ok(controls(serving, { role: "serve" }).stop.hidden);
 });
 
-test("an error is marked as one once the experiment is known", () => {
+test("errors are marked once the experiment is known", () => {
   assert.equal(controls(session({ found: null })).about.isError, false);
   assert.equal(controls(session({ found: facts({ stream: role("no line") }) })).about.isError, true);
   assert.equal(controls(session()).about.isError, false);
@@ -172,7 +172,7 @@ test("the dialog says first that a device is unsettled", () => {
   );
 });
 
-test("an outcome claims nothing that is not known", () => {
+test("an outcome states only confirmed results", () => {
   const rows = [
     [framed, true, /^Verified/],
     [{ ...framed, verified: false, why: "no reply." }, false, /^Not verified: no reply\.$/],

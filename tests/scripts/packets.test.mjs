@@ -9,12 +9,12 @@ test("a wide table shows all bytes and the gap", () => {
   assert.deepEqual(columnWidths(widest, 1200, false), { isTight: false, bytes: 400, outcome: 90 });
 });
 
-test("the bytes of a frame get what its meaning leaves", () => {
+test("the bytes of a frame get the space left by its meaning", () => {
   assert.equal(columnWidths(widest, 800, true).bytes, 800 - 30 - 80 - 60 - 90 - 300);
   assert.equal(columnWidths(widest, 800, false).bytes, (800 - 30 - 80 - 60 - 90) / 2);
 });
 
-test("in a narrow table the gap goes first, and the outcome narrows last", () => {
+test("in a narrow table the gap is hidden first, and the outcome shrinks last", () => {
   const narrow = columnWidths(widest, 360, false);
   assert.ok(narrow.isTight);
   assert.deepEqual([narrow.bytes, narrow.outcome], [96, 90]);
@@ -22,7 +22,7 @@ test("in a narrow table the gap goes first, and the outcome narrows last", () =>
   assert.deepEqual([least.bytes, least.outcome], [80, 52]);
 });
 
-test("a row is lit by its packet, or by the time that it takes", () => {
+test("a row is highlighted by its packet or by its time", () => {
   const row = { index: 4, start_cycle: 100, line_end_cycle: 200 };
   const rows = [
     [null, false],
@@ -35,7 +35,7 @@ test("a row is lit by its packet, or by the time that it takes", () => {
   for (const [highlighted, expected] of rows) assert.equal(isHighlighted(row, highlighted), expected);
 });
 
-test("cells say what a row is, and the tooltip why", () => {
+test("cells state the kind of a row, and the tooltip the reason", () => {
   const row = {
     index: 1234,
     start: "5",

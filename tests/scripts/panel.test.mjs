@@ -129,7 +129,7 @@ test("only the first ignored presses are listed", () => {
   assert.deepEqual([items.length, more], [20, "and 5 more"]);
 });
 
-test("the last place up to a value is found in a list with a stride", () => {
+test("the last index up to a value is found in a list with a stride", () => {
   const list = [10, 0, 20, 0, 20, 0, 30, 0];
   assert.deepEqual(
     [5, 10, 20, 25, 99].map((value) => lastUpTo(list, value, 2)),
@@ -182,7 +182,7 @@ test("keys choose the next entry, and the nearest of another row", () => {
   assert.equal(entryBelow(all, rows, all[0], -1), undefined);
 });
 
-test("a pointer takes the nearest entry of its row", () => {
+test("a pointer selects the nearest entry of its row", () => {
   const rows = ["ok"];
   const all = [placed(0, 10, "ok"), placed(1, 16, "ok")];
   const distance = (at) => (cycle) => Math.abs(cycle - at);
@@ -241,7 +241,7 @@ test("the moves of one drag are one step of undo", () => {
   assert.equal(bench.editor.same(to), null);
 });
 
-test("a held button's release is put off, and nothing else is", () => {
+test("only the release of a held button is postponed", () => {
   const bench = editorOf([{ inputs: [] }, { inputs: [] }]);
   assert.ok(bench.editor.hold("ok", 100, 200, null));
   assert.ok(bench.editor.hold("ok", 100, 300, 200));

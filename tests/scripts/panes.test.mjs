@@ -50,7 +50,7 @@ test("a view folds and unfolds", () => {
   assert.ok(!layout.isSmall(apply(folded, layout.folded(folded, "pulses")), "pulses"));
 });
 
-test("a view with nothing to show is small until it is unfolded", () => {
+test("an empty view is small until it is expanded", () => {
   const bare = update(start, { type: "empty", view: "packets", isEmpty: true });
   assert.ok(layout.isSmall(bare, "packets"));
   const open = apply(bare, layout.folded(bare, "packets"));
@@ -58,7 +58,7 @@ test("a view with nothing to show is small until it is unfolded", () => {
   assert.ok(layout.isSmall(apply(open, layout.folded(open, "packets")), "packets"));
 });
 
-test("one view fills the screen, and then nothing is small", () => {
+test("one view fills the screen, and then no view is small", () => {
   const folded = apply(start, layout.folded(start, "pulses"));
   const most = apply(folded, layout.maximized(folded, "motion"));
   assert.equal(layout.largestOf(most), "motion");
@@ -67,7 +67,7 @@ test("one view fills the screen, and then nothing is small", () => {
   assert.equal(layout.largestOf(update(start, { type: "view", view: "study" })), "study");
 });
 
-test("a maximized view that has nothing to show gives the screen back", () => {
+test("an empty maximized view is restored", () => {
   const most = apply(start, layout.maximized(start, "packets"));
   assert.equal(layout.largestOf(update(most, { type: "empty", view: "packets", isEmpty: true })), null);
   const bare = update(start, { type: "empty", view: "packets", isEmpty: true });

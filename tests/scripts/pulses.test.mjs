@@ -16,7 +16,7 @@ test("a cursor snaps to the nearest edge within reach", () => {
   assert.equal(nearestEdge([0], 3, 6), 0);
 });
 
-test("a jump begins at cursor A while it is in sight", () => {
+test("a jump begins at cursor A while it is visible", () => {
   assert.deepEqual([searchStart(state(500), true), searchStart(state(500), false)], [500, 500]);
   assert.deepEqual([searchStart(state(50), true), searchStart(state(50), false)], [100, 1100]);
   assert.equal(searchStart(state(), true), 100);

@@ -194,7 +194,7 @@ test("a note is cut at its maximum length, by characters", () => {
   assert.equal(texts.sentence("the file is empty."), "The file is empty.");
 });
 
-test("figures of steps name peaks only where there are some", () => {
+test("figures of steps state peaks only if there are any", () => {
   const figures = { steps: 1, right: 1, left: 0, first_s: 0, last_s: 0, shortest_at_s: null };
   const none = { ...figures, greatest_rate_steps_s: null, greatest_acceleration_steps_s2: null };
   assert.equal(

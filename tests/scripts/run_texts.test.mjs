@@ -8,7 +8,7 @@ const validation = { problems: [], scenario: "{}", derived: null, cost: null };
 const controllers = [{ channels: 1, edges: 12_345 }];
 const summary = { end_cycle: 10, end_s: 0.4, clock_hz: 1, controllers };
 
-test("the header says what a run does, and what it came to", () => {
+test("the header states the progress and the result of a run", () => {
   const valid = update(initial({}), { type: "validated", revision: 0, validation });
   const running = update(valid, { type: "running" });
   const at = (cycle, end_cycle) =>

@@ -48,7 +48,7 @@ test("a scenario waits for its validation, runs once, and stops for problems", (
   for (const [state, ran, expected] of rows) assert.equal(nextStep(state, ran), expected);
 });
 
-test("a validation goes to the revision that it was asked for", async () => {
+test("a validation is assigned to the revision that requested it", async () => {
   const { runner, calls, dispatch, ...made } = bench();
   await runner.validate();
   assert.deepEqual(calls, ["check"]);

@@ -477,7 +477,7 @@ function frozen(value) {
   return Object.freeze(value);
 }
 
-test("no message changes a state that it was given", () => {
+test("no message modifies the given state", () => {
   for (const [name, messages] of cases)
     assert.doesNotThrow(
       () => messages.flat().reduce((state, message) => frozen(update(state, message)), frozen(begin())),
@@ -496,13 +496,13 @@ test("a message without effect gives the same state", () => {
     assert.equal(update(base, { type, cycle: null, isEmpty: false }), base, type);
 });
 
-test("an earlier visit's result is shown while there is none", () => {
+test("the result of an earlier visit is shown until there is a new one", () => {
   const { result } = play([done(EARLIER_REVISION)]);
   assert.equal(result.revision, EARLIER_REVISION);
   assert.equal(play([done(0), done(EARLIER_REVISION)]).result.revision, 0);
 });
 
-test("the moves of one gesture are one step back", () => {
+test("the moves of one gesture are one undo step", () => {
   const pinch = (start, end) => ({ ...window(start, end), joins: "pinch" });
   const zoomed = play([done(0), window(0, 500), pinch(0, 400), pinch(0, 300)]);
   assert.deepEqual(shown(zoomed), { start: 0, end: 300 });
@@ -520,7 +520,7 @@ test("a window is clamped to the run", () => {
   for (const [given, last, wanted] of rows) assert.deepEqual(clamp(given, last), wanted);
 });
 
-test("a path isDefault to a value, and set makes no list of an object", () => {
+test("a path leads to a value, and set makes no list of an object", () => {
   assert.deepEqual(set({ x: [1, 2] }, "x[0]", 9), { x: [9, 2] });
   assert.equal(get(first, "list[1].c"), 2);
   assert.equal(get(first, "none.deeper"), undefined);
@@ -546,7 +546,7 @@ test("the axis of a field is found by its path", () => {
   for (const [path, expected] of rows) assert.equal(derivedAxis({ derived }, path), expected);
 });
 
-test("values are read under the pointer, else at a cursor that is in sight", () => {
+test("values are read under the pointer, else at a visible cursor", () => {
   const state = play([done(0), window(100, 900), cursor("a", 50), cursor("b", 500)]);
   assert.equal(readingCycle(state), 500);
   assert.equal(readingCycle(update(state, { type: "hover", cycle: 300 })), 300);

@@ -20,7 +20,7 @@ test("a kind of motion is recognized by its parts, whatever its numbers", () => 
   assert.ok(!costs.isSame({ a: { b: 1 } }, { a: null }));
 });
 
-test("a motion that is taken keeps the distance of the move", () => {
+test("an applied motion keeps the distance of the move", () => {
   const before = { ramps: { distance: { mm: 5 } } };
   assert.deepEqual(costs.replacement({ cosine: { distance: 1, ramp_s: 2 } }, before), {
     cosine: { distance: { mm: 5 }, ramp_s: 2 },
@@ -40,7 +40,7 @@ test("the compared move is within the axis and has its own duration and ramp", (
   assert.match(costs.aboutText({ ...last, steps: 0 }, 0), /ends where it starts/);
 });
 
-test("a ramp is refused only where every kind refuses it for one reason", () => {
+test("a ramp is refused only if all kinds refuse it for the same reason", () => {
   const refused = [
     { why: "too long", move: { cosine: {} } },
     { why: "other", move: { points: {} } },
@@ -50,7 +50,7 @@ test("a ramp is refused only where every kind refuses it for one reason", () => 
   assert.equal(costs.whyRampRefused([{ why: null, move: { cosine: {} } }]), "");
 });
 
-test("a jump of speed leaves acceleration and jerk without bound", () => {
+test("a jump of speed makes acceleration and jerk infinite", () => {
   const cost = { speed: 1000, jump: 0, acceleration: 5, jerk: 6, acceleration_jump: 0, torque: null };
   const cells = (more) =>
     costs.cellsOf({ ...cost, time_error_s: 0, last_step_s: 0.4, ...more }, 0.4).map(({ text }) => text);
@@ -86,7 +86,7 @@ test("the motor of the study is that of the selected channel, if its controller 
   assert.equal(motor.subjectOf({ ...state, result: { controller: 2 } }), null);
 });
 
-test("limits name the rate of the maximum oscillation and say when it is the map's edge", () => {
+test("limits state the rate of maximum oscillation and whether it is at the map's edge", () => {
   const found = { ...motor.noFindings(), start: 1234.5, oscillation: [1, 3, 2], loses: [0, 1, 1] };
   const rows = motor.limitRows(found);
   assert.deepEqual(rows[0][1], `1${THIN}234 steps/s`);
@@ -100,7 +100,7 @@ test("limits name the rate of the maximum oscillation and say when it is the map
   assert.equal(motor.limitRows(motor.noFindings()).length, 2);
 });
 
-test("a measured settling time goes to the bus of its controller", () => {
+test("a measured settling time is applied to the bus of its controller", () => {
   const step = { reached_cycles: 40 };
   assert.deepEqual(motor.settleEdit({ step }, 0), { path: "bus.settle_cycles", value: 40 });
   assert.equal(motor.settleEdit({ step }, 2).path, "controllers[1].bus.settle_cycles");
@@ -120,7 +120,7 @@ test("pulses that are staggered already keep the scenario's settling time", () =
   assert.equal(pair("staggered")[1].settle_cycles, 7);
 });
 
-test("a run that cannot be compared says why", () => {
+test("a run that cannot be compared has a reason", () => {
   const state = { validation: { cost: { over_budget: true } }, approved: -1, revision: 0, scenario: { source: {} } };
   assert.match(motor.whyNoPair(state, 1), /one motor/);
   assert.match(motor.whyNoPair(state, 2), /start it to compare/);
@@ -142,7 +142,7 @@ test("shortages of rate and of torque are reported together", () => {
   assert.match(torque.shortageText({ over_working_rate: null, total: 1 }), /^⚠ Too little torque in one interval/);
 });
 
-test("the table of ramps tells a limit of rate from one of torque", () => {
+test("the table of ramps distinguishes limits of rate and of torque", () => {
   const ramp = { index: 0, duration_s: 1, longest_s: null, too_fast: false, room_s: 0.5, enough_s: [0.1, 0.2] };
   const cells = (more) => torque.rampRows({ ramps: [{ ...ramp, ...more }] })[0];
   assert.deepEqual(cells({}), ["1, 1 s", "0.1000 to 0.2000 s", "any", "0.5000 s"]);
@@ -151,7 +151,7 @@ test("the table of ramps tells a limit of rate from one of torque", () => {
   assert.equal(cells({ too_fast: true })[2], "too fast");
 });
 
-test("a motor without current is not said to have full torque", () => {
+test("a motor without current is not reported as having full torque", () => {
   const report = { standing_mn_m: 100, load_mn_m: 10, torque_rate: null, working_rate: null, least: null, jump: 0 };
   const first = (corner_rate) => torque.motorRows({ ...report, corner_rate })[0][0];
   assert.deepEqual([first(0), first(500)], ["Torque at standstill", "Full torque"]);

@@ -24,11 +24,11 @@ function isSound(name, value) {
   return ["view", "unit"].includes(name) ? isWord(value) : Number.isSafeInteger(value) && value >= 0;
 }
 
-test("a view is written as it was read", () => {
+test("parsing and writing a view are inverses", () => {
   assert.equal(writeView(parseView(WHOLE)), WHOLE);
 });
 
-test("no cut and no changed character of a view does more than leave parts out", () => {
+test("truncated and changed views only lose parts", () => {
   const given = views();
   assert.ok(given.length > 500);
   for (const text of given) {
@@ -38,7 +38,7 @@ test("no cut and no changed character of a view does more than leave parts out",
   }
 });
 
-test("what is no view is an empty one", () => {
+test("an invalid view is an empty one", () => {
   const none = [undefined, "", "broken", "5-4", "1-2-3", "__proto__", "constructor", ".".repeat(9999)];
   for (const text of [...none, "99999999999999999999-1"]) assert.deepEqual(parseView(text), {}, text);
 });

@@ -1,11 +1,11 @@
 //! Random configurations and line activity for the property tests, as proptest strategies that shrink.
 //!
-//! Plain random bytes at random times would seldom meet a rule's edge. So a case is drawn as a list of
-//! *pieces* (a packet, a packet cut short, a frame, a damaged frame, noise) and *faults* (a forced level), each placed
-//! by a rule that aims at an edge of the contract: exactly 45 bit times after the last byte, a commit within a cycle
-//! of a tick's end, a byte in progress as a reply begins, a glitch on a sample point, a boot that ends as a packet is
-//! committed. What was drawn is plain values; the cycles are then worked out from the configuration, so that every piece
-//! shrinks on its own.
+//! Random bytes at random times would rarely reach the limit of a rule. A case is therefore a list of
+//! *pieces* (a packet, a truncated packet, a frame, a damaged frame, noise) and *faults* (a forced level). Each is placed
+//! at a limit of the contract: exactly 45 bit times after the last byte, a commit within a cycle of a
+//! tick's end, a byte in progress when a reply begins, a glitch on a sample point, a boot that ends when a packet is
+//! committed. A drawn case has plain values, and the cycles are computed from the configuration afterwards, so each piece
+//! shrinks separately.
 
 mod faults;
 mod frames;
@@ -31,10 +31,10 @@ pub use lines::{framed_lines, framed_lines_of_one_address};
 pub use segments::{SegmentCase, segment_lists};
 pub use setup::{Mode, configs, every_mode};
 
-/// No run with raw packets is longer than this, cycles.
+/// Maximum cycles of a run with raw packets.
 const LONGEST_RUN: u64 = 30_000;
 
-/// A configuration with raw packets and something to do with it, at most 30 000 cycles long.
+/// A configuration with raw packets and line activity for it, at most 30 000 cycles long.
 pub fn cases(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = (Config, Input)> {
     (configs(modes), activity()).prop_map(|(config, activity)| {
         let mut line = vec![config];
@@ -43,8 +43,8 @@ pub fn cases(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = (Confi
     })
 }
 
-/// One to four controllers with raw addressed packets on one line and something to do with them, at most 30 000 cycles
-/// long. `clock_hz`, `baud` and `channels` are common, and every address is another; a few controllers are refused.
+/// One to four controllers with raw addressed packets on one line, and line activity for them, at most 30 000 cycles
+/// long. `clock_hz`, `baud` and `channels` are common, and addresses differ; a few controllers are refused.
 pub fn raw_lines<M>(modes: M) -> impl Strategy<Value = (Vec<Config>, Input)>
 where
     M: Strategy<Value = Mode> + 'static,
@@ -55,19 +55,19 @@ where
     })
 }
 
-/// What happens on a line of raw packets, before the configurations give it cycles.
+/// Activity on a line of raw packets, before its cycles are computed from the configurations.
 #[derive(Debug)]
 struct Activity {
-    /// Each piece with the controller whose packet it is.
+    /// Each piece, with the controller of its packet.
     pieces: Vec<(Pause, Piece, Split, Index)>,
     in_a_hurry: bool,
     faults: Vec<LineFault>,
-    /// The first controller's boot ends as a packet comes, or a cycle beside it.
+    /// The first controller's boot ends in the cycle of a packet, or one cycle before or after it.
     boot_at_commit: Option<(Index, i64)>,
     end: End,
 }
 
-/// Where a piece is cut in two, and the pause between.
+/// Where a piece is split, and the pause between the parts.
 type Split = Option<(Index, Pause)>;
 
 fn activity() -> impl Strategy<Value = Activity> {
@@ -89,7 +89,7 @@ fn activity() -> impl Strategy<Value = Activity> {
 }
 
 impl Activity {
-    /// Works out the cycles on a line of at least one controller.
+    /// Computes the cycles on a line of at least one controller.
     fn on(self, configs: &mut [Config]) -> Input {
         let first = configs[0].clone();
         let mut line = Line::new(&first, self.in_a_hurry);
@@ -132,14 +132,14 @@ impl Activity {
 
 #[derive(Debug, Clone, Copy)]
 enum End {
-    /// Cycles after the line has gone quiet.
+    /// Cycles after the line has become idle.
     After(u64),
-    /// In the midst of the line's activity, per mille of it.
+    /// During the line's activity, in per mille of it.
     PartWay(u64),
-    /// Some ticks after a send's last delivery: where they run from it, in the cycle of a tick's end or
-    /// beside it.
+    /// A number of ticks after a send's last delivery: if they start there, in the cycle of a tick's end or
+    /// next to it.
     AfterTicks(Index, u64, i64),
-    /// 45 bit times after a send's last delivery, and some cycles.
+    /// 45 bit times and some cycles after a send's last delivery.
     Gap(Index, i64),
 }
 

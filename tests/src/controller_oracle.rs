@@ -1,17 +1,16 @@
-//! The stand-alone controller's second reader: a slow model of its panel, programs, moves, memory and axis, written
-//! from the sentences of Part G and from nothing else, so that property tests can hold the product to the text.
+//! An independent model of the stand-alone controller: slow, with panel, programs, moves, memory and axis, written
+//! only from the text of Part G. Property tests compare the controller with it.
 //!
-//! It is plain on purpose: one cycle after another, G1's order is the order of the calls, every rule stands where its
-//! sentence stands, and nothing is shared with the core, CRC-32C and XXH64 included. Cycles may be passed over only
-//! where one has just changed nothing and no time that the state holds comes before: `run` does, `run_every_cycle`
-//! does not, and a test holds both to the same records.
+//! It is simple: it runs cycle by cycle, the order of calls is that of G1, each rule is where its sentence is, and it
+//! shares nothing with the core, not even CRC-32C and XXH64. `run` skips cycles only if the last one changed nothing
+//! and the state has no earlier time; `run_every_cycle` skips none. A test compares the records of both.
 //!
 //! ```text
 //! script --3 raw, axis, debounced--> 4 reactions --moves, EN, cuts--> 1 engine of the next cycles --> records (A3)
 //!    position, trust, numbers <--5 begins, 2 bytes--> EEPROM;   end of the cycle before --G8--> panel records
 //! ```
 //!
-//! Where the contract leaves room, the reading taken is written at the line that takes it ("Reading:").
+//! Where the contract is ambiguous, a comment "Reading:" states the interpretation.
 
 mod arithmetic;
 mod axis;

@@ -1,8 +1,8 @@
-//! How many random cases a property test takes, and where what failed is remembered.
+//! Number of random cases of a property test, and the file of its failures.
 
 use proptest::test_runner::{Config, FileFailurePersistence};
 
-/// So many cases, or as many as PROPTEST_CASES says; what failed is kept beside the test's file and tried
+/// This number of cases, or that of `PROPTEST_CASES`. Failures are saved next to the test's file, and run
 /// first the next time.
 #[must_use]
 pub fn cases(cases: u32) -> Config {

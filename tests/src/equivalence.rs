@@ -1,7 +1,7 @@
-//! Every way through a scenario leaves the same (DESIGN A2): the fast speed, slices of it, clock by clock, and a device
-//! driven by hand. What a run leaves also agrees with itself: its trace, positions, ticks and digest (A3, A7).
+//! Compares all ways to run a scenario (DESIGN A2): from event to event, in slices, clock by clock, and a device that is
+//! driven directly. Also checks that the trace, positions, ticks and digest of a run agree (A3, A7).
 //!
-//! All checks panic with what differs, so that property tests, fuzz targets and kept findings share them.
+//! All checks panic with the difference, so that property tests, fuzz targets and stored findings can use them.
 
 use std::sync::Arc;
 use stepscope_core::inspect::trace::stored_run::StoredRun;
@@ -18,12 +18,12 @@ use stepscope_core::{
     sim::{Experiment, Run},
 };
 
-/// All that a run leaves.
+/// All results of a run.
 #[derive(Default)]
 pub struct Left {
     /// Records, digest and packets.
     pub recording: StoredRun,
-    /// Everything that happened beside the signals.
+    /// All events, in addition to the signals.
     pub events: Vec<(Instant, Event)>,
 }
 
@@ -38,22 +38,22 @@ impl Sink for Left {
     }
 }
 
-/// How to go through a scenario beside the fast speed.
+/// The ways to run a scenario.
 #[derive(Clone, Copy, Debug)]
 pub struct Ways<'a> {
-    /// The run in slices of so many records, again and again; none can be 0.
+    /// Slices of these numbers of records, repeated; none is 0.
     pub slices: &'a [u64],
-    /// How much of what is quiet a device driven by hand skips at once, in percent.
+    /// Percentage of the idle cycles that a directly driven device skips at once.
     pub hurry: u64,
-    /// Longest run that is also made clock by clock, in cycles.
+    /// Maximum length of a run that is also made clock by clock, in cycles.
     pub most_clocked: u64,
 }
 
-/// Runs a scenario in every way; by hand only where one controller runs ticks and its line is raw and without noise.
+/// Runs a scenario in every way; directly only if a single controller runs ticks on a raw line without noise.
 ///
 /// # Panics
-/// If two ways differ, if what is left does not agree with itself, or if the run costs more than was said before it
-/// (where the host waits for replies that is an estimate, and not checked).
+/// If two runs differ, if the results of a run contradict each other, or if the run exceeds its computed cost
+/// (not checked if the host waits for replies, because then the cost is an estimate).
 pub fn check(scenario: &Scenario, experiment: &Experiment, ways: Ways<'_>) {
     let each = || -> Vec<Left> { experiment.configs().map(|_| Left::default()).collect() };
     let mut fast = each();
@@ -69,7 +69,7 @@ pub fn check(scenario: &Scenario, experiment: &Experiment, ways: Ways<'_>) {
         assert!(fast.iter().all(|left| left.events.is_empty()), "segments make pulses and nothing else");
         assert_eq!((run.faults().bits(), run.ticks_done()), (0, 0), "segments have no faults and no ticks");
     }
-    // The segment engine runs in the first controller's place.
+    // The segment engine replaces the first controller.
     let first = run.positions();
     let positions = [&first[..]].into_iter().chain(run.devices().skip(1).map(Device::positions));
     for (((left, device), config), positions) in
@@ -113,10 +113,10 @@ fn same_run(way: &str, (left, run): (&[Left], &Run), (fast, fast_run): (&[Left],
     assert_eq!(run.cycles(), fast_run.cycles(), "{way}: cycles");
 }
 
-/// Compares what two ways through the same scenario left.
+/// Compares the results of two runs of the same scenario.
 ///
 /// # Panics
-/// If they differ, with the name of the first one and the first difference.
+/// If they differ, with the name of the first and the first difference.
 pub fn same(way: &str, left: (&Left, &Device), fast: (&Left, &Device)) {
     let ((left, device), (fast, fast_device)) = (left, fast);
     each_equal(way, "record", &left.recording.trace, &fast.recording.trace);
@@ -129,14 +129,14 @@ pub fn same(way: &str, left: (&Left, &Device), fast: (&Left, &Device)) {
     assert_eq!(device.now(), fast_device.now(), "{way}: cycles");
 }
 
-/// Lists are compared entry by entry: a difference is told without the thousands that are equal.
+/// Compares lists entry by entry, so that a message has only the difference.
 fn each_equal<T: PartialEq + std::fmt::Debug>(way: &str, what: &str, left: &[T], fast: &[T]) {
     for index in 0..left.len().max(fast.len()) {
         assert_eq!(left.get(index), fast.get(index), "{way}: {what} {index}");
     }
 }
 
-/// A trace is as A3 says.
+/// Checks the form of a trace (A3).
 fn consistent(left: &Left, config: &Config, cycles: Cycles) {
     let trace = &left.recording.trace;
     let first = Record { cycle: Instant::RESET, levels: Levels::RESET };
@@ -154,7 +154,7 @@ fn consistent(left: &Left, config: &Config, cycles: Cycles) {
     assert_eq!(Digest::of(trace), left.recording.digest.value(), "digest of the records");
 }
 
-/// What a controller counts is what its trace and its events say.
+/// Compares a controller's counters with its trace and its events.
 fn counted(left: &Left, config: &Config, positions: &[i32], ticks_done: u32) {
     for (channel, &position) in (0..).zip(positions) {
         let made = steps(&left.recording.trace, channel).last().map_or(0, |step| step.position);
@@ -169,13 +169,13 @@ fn counted(left: &Left, config: &Config, positions: &[i32], ticks_done: u32) {
         assert!(begun == ended || begun == ended + 1, "{begun} ticks began, {ended} ended");
         assert!(begun <= queued, "{begun} ticks began, {queued} packets were queued");
     } else {
-        // STOP abandons ticks.
+        // STOP cancels ticks.
         assert!(begun >= ended, "{begun} ticks began, {ended} ended");
     }
 }
 
-/// As a firmware's test would drive a peripheral by hand: `clock` where something can change, `skip` over what `quiet`
-/// says. `hurry` is how much of that it skips at once, in percent.
+/// Drives a peripheral like a test of firmware: `clock` where something can change, `advance` over the idle cycles.
+/// `hurry` is the percentage of them that it skips at once.
 fn by_hand(config: &Config, mut line: Line, cycles: Cycles, hurry: u64) -> (Left, Device) {
     let (mut left, mut device) = (Left::default(), Device::new(config));
     while device.now().0 < cycles.0 {
@@ -190,7 +190,7 @@ fn by_hand(config: &Config, mut line: Line, cycles: Cycles, hurry: u64) -> (Left
     (left, device)
 }
 
-/// The line of a scenario, made from the outside.
+/// The line of a scenario, from its sends and forced levels.
 fn line(scenario: &Scenario, experiment: &Experiment) -> Line {
     let forced = scenario.line.glitches.iter().map(|glitch| ForcedLevel {
         start: Instant(glitch.start_cycle),

@@ -1,8 +1,8 @@
-//! What the fuzz targets check, as plain functions of bytes that panic where a property is broken. `cargo xtask fuzz`
-//! feeds them with libFuzzer's inputs; `tests/findings.rs` with all that was ever found, with the seeds and with chance.
+//! The checks of the fuzz targets, as functions of bytes that panic if a property is violated. `cargo xtask fuzz`
+//! runs them with libFuzzer's inputs; `tests/findings.rs` with all earlier findings, the seeds and random inputs.
 //!
-//! A new target is a module here, a line in `TARGETS` and a file in `fuzz/fuzz_targets/`. Its findings lie in
-//! `findings/<target>/`, a file each: see the README there.
+//! A new target is a module here, a line in `TARGETS` and a file in `fuzz/fuzz_targets/`. Its findings are
+//! files in `findings/<target>/`: see the README there.
 
 pub mod capture;
 pub mod frames;
@@ -20,16 +20,16 @@ use stepscope_core::scenario::{
 /// A fuzz target.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// Its name: of the binary in `fuzz/`, and of the folder in `findings/`.
+    /// Name of its binary in `fuzz/`, and of its folder in `findings/`.
     pub name: &'static str,
-    /// Panics where a property is broken.
+    /// Panics if a property is violated.
     pub check: fn(&[u8]),
-    /// What an input stands for, in words that a person can use.
+    /// A readable description of an input.
     pub told: fn(&[u8]) -> String,
-    /// What fuzzing begins with, made from files of the repository; never empty.
+    /// The initial inputs, made from files of the repository; never empty.
     pub seeds: fn() -> Vec<Vec<u8>>,
-    /// The words that its inputs are made of, such as `"channels"` with its quotation marks: libFuzzer's dictionary; empty
-    /// where it has none.
+    /// The words of its inputs, such as `"channels"` with its quotation marks, for libFuzzer's dictionary; empty
+    /// if it has none.
     pub words: fn() -> BTreeSet<String>,
 }
 
@@ -49,7 +49,7 @@ pub const TARGETS: &[Target] = &[
 ];
 
 impl Target {
-    /// Inputs that once broke a property: name and bytes, in the order of their names.
+    /// Inputs that once violated a property: name and bytes, sorted by name.
     ///
     /// # Errors
     /// If a file or the folder cannot be read; a target without a folder has no findings.
@@ -71,7 +71,7 @@ impl Target {
 
 /// The words of a scenario.
 fn words() -> BTreeSet<String> {
-    // Quoted words, the texts for people left out: they are long.
+    // Quoted words, without long texts.
     let words = |text: &str| -> Vec<String> {
         let quoted = text.split('"').skip(1).step_by(2);
         quoted.filter(|word| word.len() < 24).map(|word| format!("\"{word}\"")).collect()
@@ -89,13 +89,13 @@ fn text(data: &[u8]) -> String {
     String::from_utf8_lossy(data).into_owned()
 }
 
-/// JSON of the presets and the golden cases.
+/// The JSON of the presets and the golden cases.
 fn scenarios() -> impl Iterator<Item = &'static str> {
     let golden = CASES.iter().filter_map(|case| case.file("scenario.json"));
     PRESETS.iter().chain(PLANT_PRESETS).chain(CONTROLLER_PRESETS).map(|preset| preset.json).chain(golden)
 }
 
-/// The links that were published.
+/// The published links.
 fn links() -> impl Iterator<Item = &'static str> {
     include_str!("../links/v1.txt").lines().filter_map(|line| line.split(' ').next())
 }

@@ -1,16 +1,15 @@
-//! Golden cases: folders of `tests/golden/`, run by every target (native, a browser, a microcontroller) from the same
+//! Golden cases: folders of `tests/golden/`, run on every target (native, a browser, a microcontroller) from the same
 //! files.
 //!
-//! | file | what it is |
+//! | file | contents |
 //! | --- | --- |
-//! | `scenario.json` or `preset` | the experiment, or the id of the preset that it is |
-//! | `why` | the sentence of the contract that the case pins, and whether its trace was checked by hand |
+//! | `scenario.json` or `preset` | the experiment, or the id of its preset |
+//! | `why` | the sentence of the contract that the case checks, and whether its trace was checked by hand |
 //! | `digest` | XXH64 of each controller's trace, 16 hexadecimal digits |
-//! | `status` | what `stepscope run --status` prints below the digests |
-//! | `expect.trace` | the first controller's trace, where it is short: a record a line, cycle and levels in hexadecimal |
+//! | `status` | the output of `stepscope run --status` below the digests |
+//! | `expect.trace` | the first controller's trace, if it is short: one record per line, cycle and levels in hexadecimal |
 //!
-//! The last three are written by `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests golden::`
-//! and by nothing else.
+//! Only `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests golden::` writes the last three.
 
 use alloc::{
     format,
@@ -27,32 +26,32 @@ use stepscope_core::{
     sim::{Experiment, Run, Summary},
 };
 
-/// Most records of a trace that is kept as text.
+/// Maximum records of a trace that is stored as text.
 pub const MAX_RECORDS: u64 = 400;
 
-/// Runs up to which a case is also run clock by clock, in cycles.
+/// Maximum length of a run that is also made clock by clock, in cycles.
 const MAX_CYCLES_CLOCK_BY_CLOCK: u64 = 2_000_000;
 
-/// All cases, by name.
+/// All cases, sorted by name.
 pub const CASES: &[Case] = include!(concat!(env!("OUT_DIR"), "/golden.rs"));
 
 /// One case.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// Its folder's name.
+    /// Name of its folder.
     pub name: &'static str,
     /// Name and text of each file.
     pub files: &'static [(&'static str, &'static str)],
 }
 
-/// What a run leaves, in the words of the case's files.
+/// Results of a run, as in the files of a case.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// 16 hexadecimal digits, a line for each controller.
+    /// 16 hexadecimal digits, one line per controller.
     pub digest: String,
-    /// One `name value` a line.
+    /// One `name value` per line.
     pub status: String,
-    /// The first records, up to one more than a case keeps.
+    /// The first records, up to one more than a case stores.
     pub trace: Vec<Record>,
 }
 
@@ -66,7 +65,7 @@ impl Case {
     /// The scenario's JSON.
     ///
     /// # Errors
-    /// A sentence, if the case has none, two, or the id of no preset.
+    /// A sentence, if the case has no scenario, has two, or names an unknown preset.
     pub fn json(&self) -> Result<&'static str, String> {
         match (self.file("scenario.json"), self.file("preset").map(str::trim)) {
             (Some(json), None) => Ok(json),
@@ -83,17 +82,17 @@ impl Case {
     /// The experiment.
     ///
     /// # Errors
-    /// A sentence with every problem of the scenario.
+    /// A sentence with all problems of the scenario.
     pub fn experiment(&self) -> Result<Experiment, String> {
         Experiment::from_json(self.json()?).map_err(|problems| {
             problems.iter().fold(format!("{}:", self.name), |text, problem| format!("{text}\n  {problem}"))
         })
     }
 
-    /// Runs the experiment at the fast speed and, where it is short, clock by clock too (DESIGN A2).
+    /// Runs the experiment from event to event and, if it is short, clock by clock, too (DESIGN A2).
     ///
     /// # Errors
-    /// A sentence with every problem of the scenario.
+    /// A sentence with all problems of the scenario.
     pub fn run(&self) -> Result<(Outcome, Option<Outcome>), String> {
         let experiment = self.experiment()?;
         let mut cycles = 0;
@@ -108,7 +107,7 @@ impl Case {
         Ok((fast, slow))
     }
 
-    /// Runs the experiment as [`Case::run`] does and compares with the case's files: the whole test of a target.
+    /// Runs the experiment like [`Case::run`] and compares it with the case's files: the complete test of a target.
     ///
     /// # Errors
     /// The problems of the scenario, or the differences.
@@ -126,7 +125,7 @@ impl Case {
     /// Compares a run with the case's files.
     ///
     /// # Errors
-    /// Every difference; of the trace's only the first, with the names of the signals.
+    /// All differences; of the trace only the first, with the names of the signals.
     pub fn compare(&self, found: &Outcome) -> Result<(), String> {
         let mut differences = String::new();
         let file = |name| self.file(name).unwrap_or_default();
@@ -150,8 +149,8 @@ impl Case {
 }
 
 impl Outcome {
-    /// Makes a run by `go`, which takes the sinks of the controllers' records; of the additional ones digest and status
-    /// are kept, of the first the records too.
+    /// Makes a run by `go`, which gets the sinks of the controllers. Stores digest and status of all controllers,
+    /// and the records of the first one.
     pub fn of(go: impl FnOnce(&mut [Keep]) -> Run, experiment: &Experiment) -> Self {
         let mut keeps: Vec<Keep> = (0..experiment.controllers()).map(|_| Keep::default()).collect();
         let run = go(&mut keeps);
@@ -164,7 +163,7 @@ impl Outcome {
         Self { digest, status, trace: keeps.into_iter().next().map(|keep| keep.first).unwrap_or_default() }
     }
 
-    /// The trace as text, if it is short enough to be kept.
+    /// The trace as text, if it is short enough to be stored.
     #[must_use]
     pub fn trace_text(&self) -> Option<String> {
         let mut text = String::new();
@@ -175,7 +174,7 @@ impl Outcome {
     }
 }
 
-/// Takes a run's records: the digest of all, and the first ones.
+/// Receives the records of a run: the digest of all, and the first ones.
 #[derive(Default)]
 pub struct Keep {
     digest: Digest,
@@ -191,7 +190,7 @@ impl Sink for Keep {
     }
 }
 
-/// The first record that differs from the text's, with the one before it and the signals' names.
+/// The first record that differs from the text's, with the previous one and the signals' names.
 fn first_difference(expected: &str, found: &[Record]) -> Option<String> {
     let lines: Vec<&str> = expected.lines().collect();
     let records: Vec<_> = lines.iter().map(|line| parse_line(line).ok()).collect();
@@ -212,7 +211,7 @@ fn first_difference(expected: &str, found: &[Record]) -> Option<String> {
     ))
 }
 
-/// A record in words: the cycle, what has changed since the record before, and what is high.
+/// Describes a record: the cycle, the changes since the previous record, and the high signals.
 fn describe(record: Option<Record>, before: Option<&Record>) -> String {
     let Some(Record { cycle, levels }) = record else { return "no record".into() };
     let names = |mask: u64, mark: &str| {

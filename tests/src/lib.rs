@@ -1,5 +1,5 @@
-//! What the tests of all targets share: the golden cases, and natively the independent model of the contract, the
-//! strategies that feed it, and the checks that fuzzing feeds.
+//! Shared by the tests of all targets: the golden cases, and natively the independent models of the contract, the
+//! strategies for random input, and the checks of the fuzz targets.
 #![cfg_attr(target_os = "none", no_std)]
 
 extern crate alloc;
@@ -8,19 +8,19 @@ pub mod golden;
 
 pub mod plant_digests;
 
-/// The slow model of the contract that the core is compared with.
+/// The slow model of the contract, for comparison with the core.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod oracle;
 
-/// The slow model of the plant that the core's is compared with.
+/// The slow model of the plant, for comparison with the core.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod plant_oracle;
 
-/// The digest that both slow models reckon by themselves.
+/// The digest of both slow models, computed independently.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 mod xxh64;
 
-/// The slow model of the stand-alone controller that the core's is compared with.
+/// The slow model of the stand-alone controller, for comparison with the core.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod controller_oracle;
 
@@ -32,19 +32,19 @@ pub mod cases;
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod scenarios;
 
-/// How many random cases a property test takes.
+/// Number of random cases of a property test.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod effort;
 
-/// A configuration of the slow model in the core's words.
+/// Converts configurations of the slow model to the core's types.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod translate;
 
-/// Every way through a scenario, compared.
+/// Compares all ways to run a scenario.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod equivalence;
 
-/// What the fuzz targets check.
+/// The checks of the fuzz targets.
 #[cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 pub mod fuzzing;
 

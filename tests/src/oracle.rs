@@ -1,17 +1,17 @@
-//! The contract's second reader: a slow model of the peripheral, written from the sentences of DESIGN Part A and
-//! from nothing else, so that property tests can hold the core to the text edge by edge.
+//! An independent model of the peripheral: slow, and written only from the text of DESIGN Part A. Property tests compare
+//! each edge of the core with it.
 //!
-//! It is naive on purpose. Every cycle of `0..cycles` is visited one at a time; levels come straight from the
-//! contract's formulas; nothing is skipped, predicted or shared with the core, COBS and CRC-32C included.
+//! It is simple: it visits each cycle of `0..cycles`, and takes levels directly from the contract's
+//! formulas. It skips and predicts nothing, and shares nothing with the core, not even COBS and CRC-32C.
 //!
 //! ```text
-//! sends, replies, forced --A4 sender--> line (RX, a level a cycle) --A4 receiver--> bytes, framing errors
-//!    --A5 packets | A6 frames--> orders, faults, replies --A7--> queue, ticks, slots, pulses
+//! sends, replies, forced --A4 sender--> line (RX, one level per cycle) --A4 receiver--> bytes, framing errors
+//!    --A5 packets | A6 frames--> commands, faults, replies --A7--> queue, ticks, slots, pulses
 //!    --A3--> records, positions
 //! segments --A8--> pulses, DIR changes --A3--> records, positions
 //! ```
 //!
-//! Where the contract leaves room, the reading taken is written at the line that takes it ("Reading:").
+//! Where the contract is ambiguous, a comment "Reading:" states the interpretation.
 
 mod controller;
 mod frames;
@@ -20,7 +20,7 @@ mod orders;
 mod packets;
 mod sequencer;
 
-/// Lists of segments, and what a run of them leaves behind.
+/// Lists of segments, and the results of their run.
 pub mod segments;
 
 #[cfg(test)]
@@ -38,19 +38,19 @@ pub use sequencer::fires;
 
 /// Fault bit 0 (A6's list): a stop bit was low.
 pub const FRAMING: u16 = 1 << 0;
-/// Fault bit 1: a gap found a packet unfinished, or a run of bytes was no frame.
+/// Fault bit 1: a gap ended an incomplete packet, or a run of bytes was no frame.
 pub const SHORT_PACKET: u16 = 1 << 1;
-/// Fault bit 2: a frame failed its check.
+/// Fault bit 2: the CRC of a frame was wrong.
 pub const CRC: u16 = 1 << 2;
 /// Fault bit 3: a run of bytes decoded to more than [`LONGEST_FRAME`].
 pub const OVERLONG: u16 = 1 << 3;
-/// Fault bit 4: a packet or frame found the queue full.
+/// Fault bit 4: the queue was full for a packet or frame.
 pub const QUEUE_OVERFLOW: u16 = 1 << 4;
-/// Fault bit 5: a packet or frame ordered more steps than a tick has slots.
+/// Fault bit 5: a packet or frame had more steps than a tick has slots.
 pub const TOO_MANY_STEPS: u16 = 1 << 5;
-/// Fault bit 6: a frame's seq was neither the expected one nor a repeat's.
+/// Fault bit 6: a frame's seq was neither the expected one nor that of a repeat.
 pub const BAD_SEQ: u16 = 1 << 6;
-/// Fault bit 7 (A7): a tick with counts ended and none followed.
+/// Fault bit 7 (A7): a tick with counts ended without a successor.
 pub const UNDERRUN: u16 = 1 << 7;
 
 /// The bits of a record's levels (A3): channel 0's STEP and DIR, and the lines that all channels share.
@@ -69,7 +69,7 @@ pub mod bits {
     pub const DE: u32 = 35;
 }
 
-/// Everything that the contract lets one configure, in the contract's own units: rates in hertz and baud,
+/// All parameters of the contract, in its own units: rates in hertz and baud,
 /// times in cycles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Config {
@@ -77,7 +77,7 @@ pub struct Config {
     pub clock_hz: u64,
     /// The sender's baud rate.
     pub baud: u64,
-    /// The receiver's baud rate; apart from `baud` where a clock error is modelled.
+    /// The receiver's baud rate; it differs from `baud` if a clock error is modeled.
     pub receiver_baud: u64,
     /// Used channels, 1..=16.
     pub channels: usize,
@@ -93,48 +93,48 @@ pub struct Config {
     pub dir_hold: u64,
     /// dp, the settling time of the supply current, cycles; used by `staggered` only.
     pub settle: u64,
-    /// Places in the queue, in ticks, 1..=255.
+    /// Capacity of the queue, in ticks, 1..=255.
     pub queue_depth: usize,
     /// The cycles 0..=boot-1 are self-test.
     pub boot: u64,
     /// Distribution of a tick's steps: `true` spread, `false` burst.
     pub spread: bool,
-    /// `true`: one DIR line for all; `false`: one a channel.
+    /// `true`: one DIR line for all; `false`: one per channel.
     pub common_dir: bool,
     /// `true`: staggered; `false`: simultaneous.
     pub staggered: bool,
-    /// The controller's own address, 0..=254; `None`: raw packets carry no address, and in framed mode it is 0.
+    /// The controller's own address, 0..=254; `None`: raw packets have no address, and in framed mode it is 0.
     pub address: Option<u8>,
     /// `true`: the framed protocol (A6); `false`: raw packets (A5).
     pub framed: bool,
 }
 
-/// What the host and the scenario do to the line, and for how long the run lasts.
+/// Activity of host and scenario on the line, and the length of the run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Input {
     /// (start cycle, bytes sent back to back from there), not overlapping, none before cycle 1.
     pub sends: Vec<(u64, Vec<u8>)>,
-    /// (cycle, length, level), none before cycle 1; where two overlap the later entry wins.
+    /// (cycle, length, level), none before cycle 1; if two overlap, the later entry wins.
     pub forced: Vec<(u64, u64, bool)>,
     /// The run is the cycles `0..cycles`.
     pub cycles: u64,
 }
 
-/// A6's state; the number is the status's.
+/// A6's state; the number is that in the status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum State {
     /// Self-test.
     #[default]
     Busy = 0,
-    /// Nothing runs and nothing is queued.
+    /// Nothing runs or is queued.
     Ready = 1,
     /// A tick runs or is queued.
     Moving = 2,
-    /// By STOP or DISABLE, until ENABLE.
+    /// Stopped by STOP or DISABLE, until ENABLE.
     Stopped = 3,
 }
 
-/// What a run leaves behind.
+/// Results of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Run {
     /// A3's records (cycle, levels).
@@ -143,13 +143,13 @@ pub struct Run {
     pub positions: [i32; 16],
     /// Fault flags, bits as in A6's list.
     pub faults: u16,
-    /// Ticks whose end was reached.
+    /// Ticks that ended.
     pub ticks_done: u32,
-    /// The seq that the next TICKS must have (A6); 0 with raw packets.
+    /// The seq of the next TICKS (A6); 0 with raw packets.
     pub expected_seq: u8,
     /// The state in the last cycle of the run, after its byte; [`State::Busy`] for a run of no cycles.
     pub state: State,
-    /// Free places in the queue.
+    /// Free places of the queue.
     pub free: usize,
 }
 
@@ -163,8 +163,8 @@ pub fn pulse_room(config: &Config) -> u64 {
     config.pulse_width + (config.dir_setup + config.dir_hold).max(1)
 }
 
-/// Whether a configuration is refused: A4's least bit time, A7's pulse rules, and the ranges that A3, A5
-/// and A7 name.
+/// Whether a configuration is refused: A4's minimum bit time, A7's rules for pulses, and the ranges of A3, A5
+/// and A7.
 pub fn refused(config: &Config) -> bool {
     if config.clock_hz == 0 || config.baud == 0 || config.receiver_baud == 0 || config.step_period == 0 {
         return true;
@@ -196,14 +196,14 @@ pub fn refused(config: &Config) -> bool {
     }
 }
 
-/// Runs one controller, alone on its line. Its configuration must not be [`refused`].
+/// Runs a single controller on its line. Its configuration must not be [`refused`].
 pub fn run(config: &Config, input: &Input) -> Run {
     run_line(std::slice::from_ref(config), input).remove(0)
 }
 
-/// Runs several controllers (1..=32) on one line, cycle by cycle; a run a controller, in the order of `configs`.
+/// Runs several controllers (1..=32) on one line, cycle by cycle; one run per controller, in the order of `configs`.
 ///
-/// `clock_hz` and `baud` are common. No configuration may be [`refused`].
+/// `clock_hz` and `baud` are equal. No configuration may be [`refused`].
 pub fn run_line(configs: &[Config], input: &Input) -> Vec<Run> {
     assert!((1..=32).contains(&configs.len()), "{} controllers", configs.len());
     for config in configs {
@@ -228,8 +228,8 @@ pub fn run_line(configs: &[Config], input: &Input) -> Vec<Run> {
             if let Some(level) = forced[cycle as usize] {
                 rx = level;
             }
-            // "1 while its own DE is high". Reading: whatever is forced, too, for a transceiver that sends hears
-            // nothing.
+            // "1 while its own DE is high". Reading: even if a level is forced, because a transceiver that sends
+            // receives nothing.
             if driven[k].de {
                 rx = true;
             }

@@ -1,5 +1,5 @@
-//! The contract's three plant digests (F10: K1 to K3) on every target: whole, and as far as a microcontroller comes in a
-//! moment.
+//! The contract's three plant digests (F10: K1 to K3) on every target: for the whole run, and for a part that is short enough
+//! for a microcontroller.
 
 use alloc::{format, string::String, sync::Arc, vec, vec::Vec};
 use stepscope_core::{
@@ -15,22 +15,22 @@ use stepscope_core::{
     },
 };
 
-/// One of them.
+/// A digest of the contract.
 #[derive(Debug)]
 pub struct PlantCase {
-    /// As the contract calls it.
+    /// Its name in the contract.
     pub name: &'static str,
     motor: MotorModel,
     start: u64,
-    /// Steps, the first interval, and what each next one is longer, in cycles.
+    /// Number of steps, first interval, and change of each following one, in cycles.
     segments: Vec<(u32, u64, i64)>,
-    /// Cycles and digest, as the contract has them.
+    /// Cycles and digest in the contract.
     whole: (u64, u64),
-    /// Fewer cycles, and the digest by then.
+    /// Fewer cycles, and their digest.
     short: (u64, u64),
 }
 
-/// All three.
+/// All three digests.
 #[must_use]
 pub fn plant_cases() -> [PlantCase; 3] {
     let full_steps = MotorModel { microsteps: 1, ..MotorModel::default() };
@@ -71,10 +71,10 @@ pub fn plant_cases() -> [PlantCase; 3] {
 }
 
 impl PlantCase {
-    /// Whether the whole run, or the short one, has its digest.
+    /// Compares the digest of the whole or of the short run.
     ///
     /// # Errors
-    /// The digest that it has instead.
+    /// The digest of the run.
     pub fn check(&self, whole: bool) -> Result<(), String> {
         let (cycles, expected) = if whole { self.whole } else { self.short };
         match self.digest(cycles) {
@@ -83,7 +83,7 @@ impl PlantCase {
         }
     }
 
-    /// The plant's digest after so many cycles.
+    /// The plant's digest after this number of cycles.
     fn digest(&self, cycles: u64) -> Option<u64> {
         let pulse = PulseTimes { width: Cycles(16), setup: Cycles(0), hold: Cycles(0) };
         let segments = self.segments.iter().map(|&(count, interval, add)| Segment::Steps {

@@ -1,8 +1,8 @@
-//! The plant's second reader: a slow model of drivers, motors, supply and sensors, written from the sentences of
-//! Part F and from nothing else, so that property tests can hold the plant to the text bit by bit.
+//! An independent model of the plant: drivers, motors, supply and sensors, slow and written only from the text of
+//! Part F. Property tests compare the plant with it, bit by bit.
 //!
-//! It is plain on purpose: every grid point is kept, every formula stands as it is printed, and nothing is shared with
-//! the core, sine, exponential and XXH64 included.
+//! It is simple: it stores every grid point, has every formula as printed, and shares nothing with
+//! the core, not even sine, exponential and XXH64.
 //!
 //! ```text
 //! records (cycle, levels) --F4 translator--> targets --F4 driver--> v --F3--> x, w, i_a, i_b, energy
@@ -10,7 +10,7 @@
 //!    x --F6--> encoder codes;  points 20, 40, ... --F8--> digest
 //! ```
 //!
-//! Where the contract leaves room, the reading taken is written at the line that takes it ("Reading:").
+//! Where the contract is ambiguous, a comment "Reading:" states the interpretation.
 
 mod driver;
 mod ledger;
@@ -25,7 +25,7 @@ mod supply;
 
 /// Records (A3) from lists of segments (A8) and from the self-test (F7).
 pub mod edges;
-/// What F8 reads off a run: delta t_p, peaks, overshoot and settling.
+/// Results of F8: delta t_p, peaks, overshoot and settling.
 pub mod results;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Random scenarios, as proptest strategies that shrink: such as run and are over soon, and such as are only of the
+//! Random scenarios, as proptest strategies that shrink: short ones that run, and ones that only have the
 //! right types.
 
 mod arbitrary;

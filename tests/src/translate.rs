@@ -1,4 +1,4 @@
-//! What the slow model is configured with and given, in the core's words.
+//! Converts configurations and inputs of the slow model to the core's types.
 
 use crate::oracle::Config;
 use stepscope_core::{
@@ -25,7 +25,7 @@ pub fn bus(config: &Config) -> Bus {
     }
 }
 
-/// What is sent, as a line script's sends.
+/// Sends as a line script.
 #[must_use]
 pub fn sends(sends: &[(u64, Vec<u8>)]) -> Vec<ScriptedSend> {
     let send = |(start_cycle, bytes): &(u64, Vec<u8>)| ScriptedSend {
@@ -36,7 +36,7 @@ pub fn sends(sends: &[(u64, Vec<u8>)]) -> Vec<ScriptedSend> {
     sends.iter().map(send).collect()
 }
 
-/// What is forced, as a line's glitches.
+/// Forced levels as the line's glitches.
 #[must_use]
 pub fn glitches(forced: &[(u64, u64, bool)]) -> Vec<Glitch> {
     let glitch = |&(start_cycle, length_cycles, level): &(u64, u64, bool)| Glitch {

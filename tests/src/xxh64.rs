@@ -1,4 +1,4 @@
-//! XXH64 with seed 0 from its specification, over bytes in one piece: the oracles' own, which shares nothing with the core's.
+//! XXH64 with seed 0 from its specification, over contiguous bytes: that of the models, which share nothing with the core.
 
 const P1: u64 = 0x9E37_79B1_85EB_CA87;
 const P2: u64 = 0xC2B2_AE3D_27D4_EB4F;

@@ -1,8 +1,8 @@
-//! DESIGN Part C, held: the way of the data is one line between the core's rooms, and no file of theirs waits in a circle for
-//! another; and what never gets into them.
+//! Checks the architecture (DESIGN Part C): the order of the crates, no circular imports of files, and no access to anything
+//! that would make results depend on the platform.
 //!
-//! The source is parsed, without what is compiled for unit tests; paths are looked at wherever they stand, in `use` lines,
-//! in expressions and types, and in macros, and followed through what a module re-exports to the file that declares.
+//! The source is parsed, without unit tests. Paths are checked everywhere: in `use` lines, expressions, types and macros.
+//! Re-exports are followed to the file that declares the item.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -15,23 +15,23 @@ use syn::{
     visit::{self, Visit},
 };
 
-/// The core's rooms in the way of the data: each may use those before it.
+/// The core's crates in the order of the data: each may use the previous ones.
 const ROOMS: &[&str] =
     &["registers", "peripheral", "motion", "plant", "controller", "capture", "scenario", "sim", "inspect"];
 
-/// Functions whose bits depend on the platform's mathematics library; `mul_add` is DESIGN A1's fused multiply-add.
+/// Functions whose results depend on the platform's math library; `mul_add` is DESIGN A1's fused multiply-add.
 const INEXACT: &[&str] = &[
     "acos", "acosh", "asin", "asinh", "atan", "atan2", "atanh", "cbrt", "cos", "cosh", "exp", "exp2",
     "exp_m1", "hypot", "ln", "ln_1p", "log", "log10", "log2", "mul_add", "powf", "powi", "sin", "sin_cos",
     "sinh", "tan", "tanh",
 ];
-/// Exact on every platform, but only there with the standard library: the core takes them from libm, too.
+/// Exact on every platform, but only in the standard library: the core takes them from libm, too.
 const EXACT: &[&str] = &["ceil", "floor", "fract", "round", "round_ties_even", "sqrt", "trunc"];
-/// Their iteration order differs from run to run.
+/// Types whose iteration order differs between runs.
 const UNORDERED: &[&str] = &["HashMap", "HashSet", "RandomState"];
-/// Clocks, threads, files and their like: nothing of them decides an edge.
+/// Clocks, threads, files and similar: none of them decides an edge.
 const OUTSIDE: &[&str] = &["env", "fs", "io", "net", "process", "thread", "time"];
-/// What one file may all the same, each with its reason.
+/// Exceptions for single files, with the reason.
 const EXCEPTIONS: &[(&str, &str, &str)] = &[
     (
         "core/motion/src/lib.rs",
@@ -56,23 +56,23 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// What a room may use of one that stands before it, where that is not all of it (DESIGN Part C): the modules.
+/// The modules of a crate that another one may use, if not all of them (DESIGN Part C).
 const NARROW: &[(&str, &str, &[&str])] = &[
     // `parameters` is a macro for structs with defaults.
     ("motion", "peripheral", &["parameters", "segment", "units", "signal"]),
     ("plant", "peripheral", &["parameters", "signal", "units"]),
-    // Neither knows the other: they meet in the scenario.
+    // They do not depend on each other; the scenario uses both.
     ("plant", "motion", &[]),
 ];
 
-/// What a file says, as far as it is looked at here.
+/// The paths and methods of a file.
 #[derive(Default)]
 struct Seen {
-    /// The module that is being visited, from the crate's root.
+    /// The module that is being visited, relative to the crate's root.
     module: Vec<String>,
-    /// All paths, each from its first name on; `crate` and `super` are resolved to the crate's root, written `crate`.
+    /// All complete paths; `crate` and `super` are resolved relative to the crate's root, written `crate`.
     paths: Vec<Vec<String>>,
-    /// Names of methods that are called.
+    /// Names of called methods.
     methods: Vec<String>,
 }
 
@@ -102,7 +102,7 @@ impl Seen {
         }
     }
 
-    /// The tokens of a macro, as words: a name, or what stands between names.
+    /// The tokens of a macro: names, and the text between them.
     fn words(&mut self, text: &str) {
         let words: Vec<&str> =
             text.split(|c: char| c.is_whitespace()).filter(|word| !word.is_empty()).collect();
@@ -149,7 +149,7 @@ impl<'ast> Visit<'ast> for Seen {
         }
     }
 
-    /// Who may see an item is no use of who is named there.
+    // The path of a visibility is no use of that module.
     fn visit_visibility(&mut self, _: &'ast Visibility) {}
 
     fn visit_item_mod(&mut self, item: &'ast ItemMod) {
@@ -173,7 +173,7 @@ impl<'ast> Visit<'ast> for Seen {
     }
 
     fn visit_macro(&mut self, called: &'ast Macro) {
-        // Visibility names no module here, either.
+        // Neither here.
         let text = called.tokens.to_string().replace("pub (crate)", "pub");
         let text = text.replace("::", " :: ").replace('.', " . ");
         let spaced: String = text
@@ -188,7 +188,7 @@ impl<'ast> Visit<'ast> for Seen {
     }
 }
 
-/// The files below a folder.
+/// The files in a folder and its subfolders.
 fn files(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
@@ -202,14 +202,14 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// A module of a room, as one of its files is.
+/// A module of a crate, from one of its files.
 struct Module {
-    /// Its file, from the project's root on.
+    /// Its file, relative to the project's root.
     file: String,
-    /// From the room's root on; empty for lib.rs.
+    /// Path from the crate's root; empty for lib.rs.
     path: Vec<String>,
     seen: Seen,
-    /// What it re-exports: the name, and where that stands, from the module on or from `crate`.
+    /// Its re-exports: the name, and the original path from the module or from `crate`.
     doors: BTreeMap<String, Vec<String>>,
 }
 
@@ -217,7 +217,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// All files of a crate but those of its unit tests.
+/// All files of a crate without its unit tests.
 fn modules(source: &str) -> Vec<Module> {
     let folder = root().join(source);
     let mut paths = Vec::new();
@@ -242,7 +242,7 @@ fn modules(source: &str) -> Vec<Module> {
     modules
 }
 
-/// The names that a file re-exports, and where each stands.
+/// The names that a file re-exports, and their original paths.
 fn doors(file: &File) -> BTreeMap<String, Vec<String>> {
     fn tree(before: &[String], tree_: &UseTree, found: &mut BTreeMap<String, Vec<String>>) {
         let with =
@@ -274,7 +274,7 @@ fn see(file: &File, module: Vec<String>) -> Seen {
     seen
 }
 
-/// The module that declares what a path means, seen from module `from`; `None` where it leads out of the crate.
+/// The module that declares the item of a path in module `from`; `None` outside of the crate.
 fn declared<'m>(modules: &'m [Module], from: &[String], path: &[String]) -> Option<&'m Module> {
     let at = |path: &[String]| modules.iter().find(|module| module.path == path);
     let (mut here, mut rest) = match path.split_first()? {
@@ -285,7 +285,7 @@ fn declared<'m>(modules: &'m [Module], from: &[String], path: &[String]) -> Opti
             (from.to_vec(), path)
         }
     };
-    // A re-export leads nearer to what it means each time.
+    // Each re-export leads closer to the declaration.
     for _ in 0..20 {
         let Some((name, after)) = rest.split_first() else { break };
         let child: Vec<String> = here.iter().chain([name]).cloned().collect();
@@ -300,7 +300,7 @@ fn declared<'m>(modules: &'m [Module], from: &[String], path: &[String]) -> Opti
     at(&here)
 }
 
-/// Which files of a crate use which, by their places in the list; opening a door to one's own modules is no use of them.
+/// Which files of a crate use which, by index; declaring a child module is no use of it.
 fn uses(modules: &[Module]) -> Vec<BTreeSet<usize>> {
     let place = |module: &Module| modules.iter().position(|other| other.path == module.path).unwrap();
     modules
@@ -314,7 +314,7 @@ fn uses(modules: &[Module]) -> Vec<BTreeSet<usize>> {
         .collect()
 }
 
-/// A way from a file back to itself, if there is one: the places on it.
+/// A circle through a file, if there is one: its indexes.
 fn circle(uses: &[BTreeSet<usize>]) -> Option<Vec<usize>> {
     fn walk(uses: &[BTreeSet<usize>], way: &mut Vec<usize>, done: &mut BTreeSet<usize>) -> bool {
         let Some(&last) = way.last() else { return false };
@@ -341,7 +341,7 @@ fn circle(uses: &[BTreeSet<usize>]) -> Option<Vec<usize>> {
     })
 }
 
-/// The crates whose files are looked at.
+/// The crates whose files are checked.
 fn sources() -> impl Iterator<Item = String> {
     ROOMS.iter().map(|room| format!("core/{room}/src"))
 }
@@ -413,7 +413,7 @@ fn every_file_named_in_the_documentation_exists() {
     assert!(named > 60, "only {named} paths were found");
 }
 
-/// Whether these words are the path of one source file or folder.
+/// Whether this is the path of one source file or folder.
 fn is_source(words: &str) -> bool {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"/_-.".contains(&byte);
     words.bytes().all(plain)
@@ -457,7 +457,7 @@ fn the_core_has_no_platform_floats_and_no_outside_state() {
     assert!(broken.is_empty(), "{}", broken.join("\n"));
 }
 
-/// What a package's manifest has between `[dependencies]` and the next section.
+/// The text between `[dependencies]` and the next section of a package's manifest.
 fn dependencies(package: &str) -> Vec<String> {
     let text = fs::read_to_string(root().join(package).join("Cargo.toml")).unwrap();
     let lines = text.lines().skip_while(|line| *line != "[dependencies]").skip(1);
@@ -513,7 +513,7 @@ fn a_re_export_is_followed_to_the_file_that_declares() {
     assert_eq!(found, [vec![], vec![], vec![], vec![1, 2]]);
 }
 
-/// The tests above are only as good as what they see.
+/// The tests above depend on these paths being found.
 #[test]
 fn every_path_outside_of_tests_is_found() {
     let file = syn::parse_file(

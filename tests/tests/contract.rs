@@ -1,6 +1,6 @@
-//! DESIGN Part A, held edge by edge: for random configurations and line activity the core gives, at every
-//! one of its speeds, the trace, positions, faults and tick count of the independent model in
-//! [`stepscope_tests::oracle`], in every mode of the driver bus.
+//! Compares the core with DESIGN Part A edge by edge. For random configurations and line activity, in every mode of the driver
+//! bus and at every speed, trace, positions, faults and tick count of the core equal those of the independent model in
+//! [`stepscope_tests::oracle`].
 
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use stepscope_tests::{
     effort, oracle, translate,
 };
 
-/// The same configuration in the core's words.
+/// The same configuration as types of the core.
 fn scenario(config: &oracle::Config, forced: &[(u64, u64, bool)], source: Source) -> Scenario {
     Scenario {
         clock_hz: config.clock_hz as u32,
@@ -42,7 +42,7 @@ fn experiment(
     Experiment::new(&scenario)
 }
 
-/// What the core leaves behind, in the model's words.
+/// The core's results as types of the model.
 fn outcome(device: &Device, trace: &[Record]) -> oracle::Run {
     oracle::Run {
         trace: trace.iter().map(|record| (record.cycle.0, record.levels.0)).collect(),
@@ -57,7 +57,7 @@ fn finished(run: &Run, trace: &[Record]) -> oracle::Run {
     outcome(run.device(), trace)
 }
 
-/// The fast speed, in slices of about `records` records.
+/// Runs from event to event, in slices of about `records` records.
 fn in_slices(experiment: &Experiment, records: u64) -> oracle::Run {
     let mut trace: Vec<Record> = Vec::new();
     let mut run = experiment.start();
@@ -65,7 +65,7 @@ fn in_slices(experiment: &Experiment, records: u64) -> oracle::Run {
     finished(&run, &trace)
 }
 
-/// `clock` in every cycle that `quiet` does not let `skip` pass.
+/// Runs `clock` in every cycle that cannot be skipped.
 fn clocked_and_skipped(experiment: &Experiment, scenario_line: wire::Line, cycles: u64) -> oracle::Run {
     let mut trace: Vec<Record> = Vec::new();
     let mut device = Device::new(experiment.config());
@@ -82,7 +82,7 @@ fn clocked_and_skipped(experiment: &Experiment, scenario_line: wire::Line, cycle
     outcome(&device, &trace)
 }
 
-/// The core's line for an input, as an [`Experiment`] makes it for itself.
+/// The core's line for an input, as in an [`Experiment`].
 fn line(experiment: &Experiment, config: &oracle::Config, input: &oracle::Input) -> wire::Line {
     let forced: Vec<_> = input
         .forced
@@ -101,7 +101,7 @@ fn line(experiment: &Experiment, config: &oracle::Config, input: &oracle::Input)
     )
 }
 
-/// Two outcomes are the same; where not, the first record that differs is named.
+/// Compares two results; a message names the first different record.
 fn same(speed: &str, core: &oracle::Run, model: &oracle::Run) -> Result<(), TestCaseError> {
     for index in 0..core.trace.len().max(model.trace.len()) {
         let (core, model) = (core.trace.get(index), model.trace.get(index));

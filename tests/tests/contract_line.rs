@@ -1,6 +1,6 @@
-//! DESIGN Part A, held edge by edge on shared lines and without a line: for random conversations with framed
-//! controllers, several raw controllers, and lists of segments the core gives, at every one of its speeds, what the
-//! independent model in [`stepscope_tests::oracle`] gives.
+//! Compares the core with DESIGN Part A edge by edge on shared lines and for segments. For random conversations with framed
+//! controllers, several raw controllers, and lists of segments, the core's results at every speed equal those of the
+//! independent model in [`stepscope_tests::oracle`].
 
 use proptest::prelude::*;
 use stepscope_core::{
@@ -16,7 +16,7 @@ use stepscope_tests::{
     effort, oracle, translate,
 };
 
-/// The same line in the core's words.
+/// The same line as types of the core.
 fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experiment, Problems> {
     let (first, additional) = (&line[0], &line[1..]);
     let controller = |config: &oracle::Config| Controller {
@@ -43,7 +43,7 @@ fn experiment(line: &[oracle::Config], input: &oracle::Input) -> Result<Experime
     })
 }
 
-/// What the core leaves behind, in the model's words; of a raw controller no status.
+/// The core's results as types of the model, without the status of a raw controller.
 fn outcomes(run: &Run, traces: &[Vec<Record>]) -> Vec<oracle::Run> {
     let one = |(device, trace): (&stepscope_core::peripheral::device::Device, &Vec<Record>)| {
         let status = device.status();
@@ -65,7 +65,7 @@ fn outcomes(run: &Run, traces: &[Vec<Record>]) -> Vec<oracle::Run> {
     run.devices().zip(traces).map(one).collect()
 }
 
-/// The outcomes are the same; where not, the first record that differs is named.
+/// Compares the results; a message names the first different record.
 fn same(speed: &str, core: &[oracle::Run], model: &[oracle::Run]) -> Result<(), TestCaseError> {
     prop_assert_eq!(core.len(), model.len());
     for (at, (core, model)) in core.iter().zip(model).enumerate() {
@@ -98,7 +98,7 @@ fn compare(line: &[oracle::Config], input: &oracle::Input) -> Result<(), TestCas
     prop_assert!(!line.iter().any(oracle::refused), "the core does not refuse");
     let mut model = oracle::run_line(line, input);
     if !line[0].framed {
-        // Raw controllers tell nothing of themselves.
+        // Raw controllers report nothing.
         for run in &mut model {
             (run.state, run.free) = (oracle::State::Busy, 0);
         }
@@ -119,7 +119,7 @@ fn compare(line: &[oracle::Config], input: &oracle::Input) -> Result<(), TestCas
     Ok(())
 }
 
-/// The lists in the core's words.
+/// The lists as types of the core.
 fn segments(case: &SegmentCase) -> Result<Experiment, Problems> {
     let segment = |segment: &oracle::segments::Segment| match *segment {
         oracle::segments::Segment::Steps { steps, interval, add, dir } => Segment::Steps(StepSegment {
@@ -155,7 +155,7 @@ proptest! {
     fn framed_controllers_with_the_same_address_match_the_model(
         (line, input) in framed_lines_of_one_address(every_mode())
     ) {
-        // A controller without an address has 0, and the additional ones need one to be written down.
+        // A controller without an address has address 0; additional ones need an explicit address.
         let line: Vec<_> = line
             .into_iter()
             .map(|config| oracle::Config { address: Some(config.address.unwrap_or(0)), ..config })

@@ -1,5 +1,5 @@
-//! Stand-alone controllers against an independent model (CONTROLLER.md G1 to G8): random setups, programs, presses, switches
-//! and power cuts, of which every edge, panel record, byte of memory and digest is the same, at both speeds.
+//! Compares stand-alone controllers with an independent model (CONTROLLER.md G1 to G8): for random setups, programs, presses,
+//! switches and power cuts, every edge, panel record, byte of memory and digest is the same, at both speeds.
 
 use stepscope_core::{
     peripheral::signal::Record,
@@ -9,12 +9,12 @@ use stepscope_tests::controller_oracle::{
     self as oracle, Case, Content, Outcome, random_case, refused, to_json,
 };
 
-/// Random cases; `PROPTEST_CASES` sets another number.
+/// Number of random cases, unless `PROPTEST_CASES` sets another.
 const CASES: u64 = 400;
-/// Work that a case may be to the slow model.
+/// Maximum work of a case for the slow model.
 const MAX_CYCLES: u64 = 50_000_000;
 const MAX_STEPS: u64 = 400_000;
-/// Cycles up to which a case is also run clock by clock.
+/// Maximum cycles of a case that is also run clock by clock.
 const MAX_CLOCKED: u64 = 200_000;
 
 fn cases() -> u64 {
@@ -80,7 +80,7 @@ fn same(seed: u64, expected: &Outcome, trace: &[Record], run: &Run, json: &str) 
     assert_eq!(machine.too_many_groups().is_some(), expected.work.is_some(), "seed {seed}\n{json}");
 }
 
-/// What the model refuses, the scenario refuses at the same paths.
+/// Values that the model refuses have problems at the same paths in the scenario.
 #[test]
 fn model_and_core_refuse_a_case_at_the_same_paths() {
     let mut case: Case = random_case(1);
@@ -92,8 +92,8 @@ fn model_and_core_refuse_a_case_at_the_same_paths() {
     assert_eq!(found, expected);
 }
 
-/// A memory whose newest record has the greatest number there is (G7): what is written after it never becomes the newest, so it
-/// is written again and again.
+/// The newest record in memory has the maximum number (G7). A later record never becomes the newest, so it
+/// is written repeatedly.
 #[test]
 fn endless_writes_end_with_the_run_with_equal_wear_at_both_speeds() {
     let open = Content { position: 5, trust: 1, open: true, group: 0, of_loop: 0 };
@@ -107,9 +107,9 @@ fn endless_writes_end_with_the_run_with_equal_wear_at_both_speeds() {
         )
     };
     let rows = [
-        // It rests.
+        // It is idle.
         (scenario(r#""run_cycles":5000,"#, r#""inputs":[]"#, 3), 5000 / 48),
-        // Presses on the way, and a cut.
+        // Presses during the run, and a power cut.
         (
             scenario(
                 r#""run_cycles":9001,"#,
@@ -129,7 +129,7 @@ fn endless_writes_end_with_the_run_with_equal_wear_at_both_speeds() {
         let most = run.writes(0).iter().copied().max().expect("cells");
         assert!(most >= least, "{most} writes\n{json}");
     }
-    // Something happens in 3000 years.
+    // An event in 3000 years.
     let far = scenario("", r#""inputs":[{"cycle":9000000000000000,"input":"in_0"}]"#, 1);
     let experiment = Experiment::from_json(&far).expect("no problems");
     let run = experiment.run(&mut Vec::<Record>::new());

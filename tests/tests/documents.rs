@@ -1,7 +1,7 @@
-//! The documents' own numbers (DESIGN Part E), through the whole line: from a preset to the pulses that it makes.
+//! The figures of the papers (DESIGN Part E), from presets to pulses.
 //!
-//! What a curve or a table says by itself (B2's rates, B4's top speed, B5's breakpoints and distortion) is pinned beside
-//! it in the core; here is what comes out at the STEP lines.
+//! Figures of single curves and tables (B2's rates, B4's top speed, B5's breakpoints and distortion) are tested in
+//! the core; these tests check the STEP signals.
 
 use std::{f64::consts::PI, fs, path::Path};
 use stepscope_core::inspect::trace::stored_run::StoredRun;
@@ -22,7 +22,7 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// A scenario that was run to its end.
+/// A scenario and its completed run.
 struct Made {
     scenario: Scenario,
     experiment: Experiment,
@@ -47,12 +47,12 @@ impl Made {
         steps(&self.recording.trace, channel)
     }
 
-    /// A tick in s.
+    /// Duration of a tick in s.
     fn tick_s(&self) -> f64 {
         self.experiment.config().tick().0 as f64 / f64::from(self.scenario.clock_hz)
     }
 
-    /// When a step comes, in s from the start of the first tick, where the motion's time 0 is.
+    /// Time of a step in s, from the start of the first tick, which is the motion's time 0.
     fn time_s(&self, step: &Step) -> f64 {
         let zero = self.recording.first_tick().expect("there is a tick");
         (step.cycle as f64 - zero.0 as f64) / f64::from(self.scenario.clock_hz)
@@ -70,7 +70,7 @@ impl Made {
     }
 }
 
-/// A step comes in the tick in which it is due, so no step is a whole tick late or early.
+/// A step is made in the tick in which it is due, so it is less than a tick late or early.
 #[track_caller]
 fn within_a_tick(made: &Made, found_s: f64, expected_s: f64) {
     assert!((found_s - expected_s).abs() < made.tick_s(), "{found_s} s is not {expected_s} s");
@@ -98,8 +98,8 @@ fn zhang_2012_ends_after_the_ramps_and_the_plateau_of_its_formulas() {
     within_a_tick(&made, made.time_s(&all[17_232 - 4_000]), t_r + t_m);
 }
 
-/// Zhang 2012's four cases (its table 3): L, f_s, the rule; the rate that the formulas have for f_s, None for the whole move
-/// at the last number; f_1 = 1000, a = 3000.
+/// Zhang 2012's four cases (its table 3): L, f_s, the rule; the rate that the formulas have for f_s, None if the whole move
+/// is at the start speed; f_1 = 1000, a = 3000.
 const FOUR_CASES: [(u32, u32, &str, Option<f64>, f64); 7] = [
     // f_s <= f_1
     (5000, 800, "document", None, 800.0),
@@ -109,13 +109,13 @@ const FOUR_CASES: [(u32, u32, &str, Option<f64>, f64); 7] = [
     (17_233, 5000, "turn_round", Some(5000.0), 0.0),
     // L = 2*S: 36 rows from 1000 have 4200 steps before the row of sqrt(f_1^2 + 2*a*4200) = 5119 steps/s.
     (8400, 5119, "document", Some(5119.0), 0.0),
-    // L < 2*S: at f_1, or to the rate after the 2430 steps of the 26 rows that fit twice.
+    // L < 2*S: at f_1, or up to the rate after the 2430 steps of the 26 rows that fit twice.
     (5000, 5000, "document", None, 1000.0),
     (5000, 5000, "turn_round", Some(3947.0), 0.0),
 ];
 
-/// A move's last step comes when the formulas say: t_r = (f_s - f_1)/a, t_m = (L - (f_1 + f_s)*t_r)/f_s; alone at one rate f
-/// the move takes L/f. A row holds the rate of its start, so ramps are a little late.
+/// The time of a move's last step follows the formulas: t_r = (f_s - f_1)/a, t_m = (L - (f_1 + f_s)*t_r)/f_s; at a single
+/// rate f the move takes L/f. A row has the rate at its start, so ramps are slightly late.
 #[track_caller]
 fn takes(last_s: f64, (steps, top, rule, reached, alone): (u32, u32, &str, Option<f64>, f64)) {
     let length = f64::from(steps);
@@ -144,7 +144,7 @@ fn zhang_2012s_four_cases_take_the_times_of_its_formulas() {
     }
 }
 
-/// The same on the document's own device: a press of start, and a program of one group.
+/// The same on the paper's own device: a press of start, and a program of one group.
 #[test]
 fn zhang_2012s_controller_takes_the_times_of_its_table_3() {
     for case in FOUR_CASES {
@@ -157,13 +157,13 @@ fn zhang_2012s_controller_takes_the_times_of_its_table_3() {
         let made = Made::of(Scenario::from_json(&json).expect("it reads"));
         let all = made.steps(0);
         assert_eq!(all.len(), steps as usize);
-        // The first step comes a period after the move begins.
+        // The first step follows one period after the start of the move.
         let first_s = 1.0 / f64::from(top.min(1000));
         takes((all[all.len() - 1].cycle - all[0].cycle) as f64 / 16e6 + first_s, case);
     }
 }
 
-/// Sonobe 2011: 0.393 mm a step, 300 mm there, 0.1 s, 60 mm back, at most 700 mm/s.
+/// Sonobe 2011: 0.393 mm per step, 300 mm forth, 0.1 s, 60 mm back, at most 700 mm/s.
 #[test]
 fn sonobe_2011_moves_forth_and_back_with_a_dwell() {
     let made = Made::preset("sonobe-2011-table");
@@ -171,13 +171,13 @@ fn sonobe_2011_moves_forth_and_back_with_a_dwell() {
     assert_eq!(all.len(), 763 + 153, "300/0.393 and 60/0.393, rounded");
     assert_eq!((all[762].position, all[763 + 152].position), (763, 610));
     let rest = made.time_s(&all[763]) - made.time_s(&all[762]);
-    // The first step back comes one interval of 100 mm/s after the pause.
+    // The first step back follows one interval of 100 mm/s after the pause.
     within_a_tick(&made, rest, 0.1 + 0.393 / 100.0);
     let top = made.experiment.plans()[0].peaks().speed;
     close(top, 700.0 / 0.393, 1e-3);
 }
 
-/// By its staircase table: level 3 from 1000 to 5000; segments put each step at its cycle of 16 MHz, time 0 at cycle 1.
+/// The staircase table: level 3 from 1000 to 5000; segments place each step in its cycle at 16 MHz, with time 0 in cycle 1.
 #[test]
 fn zhang_2012s_staircase_has_the_steps_of_each_rate() {
     let made = Made::preset("zhang-2012-staircase");
@@ -196,19 +196,19 @@ fn zhang_2012s_staircase_has_the_steps_of_each_rate() {
         }
         (n, covered) = (n + 1, covered + steps);
     }
-    // S = steps to reach f_s; L > 2*S, so the plateau follows, and the same way back.
-    // Uniform acceleration has 4000 steps; 7 times five rows are the first that have as many.
+    // S = steps to reach f_s; L > 2*S, so there is a plateau, and a mirrored deceleration.
+    // Constant acceleration takes 4000 steps; 7 times five rows are the first with at least this number.
     assert_eq!((n, k, covered), (36, 4_200, 4_200), "35 rows");
     assert_eq!(all[k + 1000].cycle - all[k].cycle, 3_200_000, "1000 steps at 5000 Hz");
     let end = all[17_232].cycle;
     for (up, down) in (0..k).zip((0..17_232).rev()) {
         assert!((all[up].cycle - 1).abs_diff(end - all[down].cycle) <= 1, "step {up}");
     }
-    // The document's times: 1.333 s, 1.847 s, 1.333 s. A row holds the rate of its start, so a ramp is some 4 % late.
+    // The paper's times: 1.333 s, 1.847 s, 1.333 s. A row has the rate at its start, so a ramp is about 4 % late.
     close(made.experiment.plans()[0].duration_s(), 4.513, 0.02);
 }
 
-/// Sonobe 2011 by segments: every edge at the table's reloads, of a timer of 1 MHz and so 16 cycles each.
+/// Sonobe 2011 in segments: every edge is at the table's reloads, of a timer of 1 MHz and so multiples of 16 cycles.
 #[test]
 fn sonobe_2011_in_segments_steps_at_the_reloads_of_its_table() {
     let made = Made::preset("sonobe-2011-segments");
@@ -231,7 +231,7 @@ fn sonobe_2011_in_segments_steps_at_the_reloads_of_its_table() {
     assert!(second.iter().zip(1..).all(|(step, k)| step.cycle == rest + 16 * back.step_ticks(k)));
 }
 
-/// The last step falls due half a step before the end (B1). Near its end the curve is, but for 1 in 1000, a cubic:
+/// The last step is due half a step before the end (B1). Near its end the curve is, to 1 in 1000, a cubic:
 /// f_max*pi^2*t^3/(12*t_s^2) steps are left t before it.
 #[allow(clippy::disallowed_methods, reason = "the last bit does not matter to a tick")]
 fn last_half_step_s(top: f64, ramp_s: f64) -> f64 {
@@ -245,7 +245,7 @@ fn song_2021_makes_one_turn_of_exactly_3200_steps_in_0_4_s() {
     let all = made.steps(0);
     assert_eq!((all.len(), all[3199].position), (3200, 3200));
     within_a_tick(&made, made.time_s(&all[3199]), 0.4 - last_half_step_s(16_000.0, 0.2));
-    // Half of the way at half of the time.
+    // Half of the distance after half of the time.
     within_a_tick(&made, made.time_s(&all[1599]), 0.2);
     let busiest = made.steps_a_tick(0).into_iter().max();
     assert_eq!(busiest, Some((3200.0 / (0.4 - 0.2) * made.tick_s()) as u32), "16000 steps/s");
@@ -265,15 +265,15 @@ fn song_2021s_table_2_has_6400_steps_in_0_4_s_without_and_with_a_plateau() {
         let (a_tick, counts) = (top * made.tick_s(), made.steps_a_tick(channel));
         let plateau = counts.iter().filter(|count| (f64::from(**count) - a_tick).abs() < 1.0).count();
         let plateau_s = plateau as f64 * made.tick_s();
-        // Near its top a cosine is flat, too: some ticks more.
+        // A cosine is nearly flat at its maximum, too, which adds some ticks.
         assert!(plateau_s >= 0.4 - 2.0 * ramp_s && plateau_s < 0.45 - 2.0 * ramp_s, "{plateau_s} s at {top}");
     }
-    // Figures 7 and 8: without a plateau the rate is higher and the acceleration gentler.
+    // Figures 7 and 8: without a plateau the rate is higher and the acceleration lower.
     let [without, with] = [0, 1].map(|channel: usize| made.experiment.plans()[channel].peaks());
     assert!(without.speed > with.speed && without.acceleration < with.acceleration);
 }
 
-/// SWorldJournal, issue 11: amplitude 20 mm; distortions 0.26913 % and 0.26710 %, and the remark on the 7th harmonic.
+/// SWorldJournal, issue 11: amplitude 20 mm; distortions 0.26913 % and 0.26710 %, and the statement on the 7th harmonic.
 #[test]
 fn sines_return_to_zero_with_the_published_distortion() {
     let spectra = [("sine-2022-d00054", 0.26913), ("sine-2022-d0006", 0.26710)].map(|(id, distortion)| {
@@ -301,7 +301,7 @@ fn sines_return_to_zero_with_the_published_distortion() {
     assert!(first * first > 22.0 * second * second, "the 7th harmonics {first} and {second} steps");
 }
 
-/// The segments of a quarter for a largest deviation d1, of an amplitude of so many steps.
+/// The segments of a quarter for a maximum deviation d1 and an amplitude in steps.
 fn sine(amplitude: f64, d1: f64) -> SineSegments {
     let given = moves::SineSegments {
         amplitude: Distance::Steps(amplitude),
@@ -327,7 +327,7 @@ fn the_figures_of_the_sine_have_4_and_10_segments_on_its_grid() {
     }
 }
 
-/// SWorldJournal, issue 11: intervals of a quarter take 100 kB and more, segments hundreds of times less.
+/// SWorldJournal, issue 11: the intervals of a quarter take 100 kB and more, segments hundreds of times less.
 #[test]
 fn sine_segments_need_hundreds_of_times_less_memory() {
     for d1 in [0.015, 0.006, 0.0054, 0.002] {
@@ -338,8 +338,8 @@ fn sine_segments_need_hundreds_of_times_less_memory() {
     }
 }
 
-/// SWorldJournal, issue 11, explains the 7th harmonic for d1 = 0.0054 by breakpoints 49.5 and 52 degrees apart. Its own
-/// breakpoints have no such distances: the nearest to the 51.4 degrees of that harmonic are 50.4 and 53.4.
+/// SWorldJournal, issue 11, explains the 7th harmonic for d1 = 0.0054 by breakpoints 49.5 and 52 degrees apart. Its
+/// breakpoints have no such distances: those nearest to the 51.4 degrees of that harmonic are 50.4 and 53.4.
 #[test]
 fn the_published_distances_of_49_5_and_52_degrees_do_not_occur() {
     let sine = sine(1000.0, 0.0054);
@@ -357,7 +357,7 @@ fn the_published_distances_of_49_5_and_52_degrees_do_not_occur() {
     assert_eq!(near, [287.0 * grid, 304.0 * grid], "50.4 and 53.4 degrees");
 }
 
-/// RU 2704486: four motors, a step every 2.048 ms, all at once.
+/// RU 2704486: four motors, a step every 2.048 ms, all at the same time.
 #[test]
 fn the_patents_four_motors_step_together() {
     let made = Made::preset("patent-2019-four-motors");
@@ -370,7 +370,7 @@ fn the_patents_four_motors_step_together() {
     assert_ticks_follow_each_other(&made);
 }
 
-/// One after the other, each after the settling time of 0.518 ms: four do not fit, so they are 2.048/4 = 0.512 ms apart.
+/// Staggered by the settling time of 0.518 ms. Four do not fit, so they are 2.048/4 = 0.512 ms apart.
 #[test]
 fn the_patents_four_motors_step_one_after_the_other() {
     let mut scenario = Made::preset("patent-2019-four-motors").scenario;
@@ -381,7 +381,7 @@ fn the_patents_four_motors_step_one_after_the_other() {
     for channel in 1..4 {
         assert_eq!(first(channel) - first(channel - 1), 8_192, "0.512 ms of 62.5 ns");
     }
-    // Of three, each has its settling time.
+    // Three motors have the full settling time.
     let Source::Packets(Packets { packets }) = &mut scenario.source else { panic!("it is packets") };
     for packet in packets {
         packet.0[1] &= 0x80;
@@ -391,7 +391,7 @@ fn the_patents_four_motors_step_one_after_the_other() {
     assert_eq!((first(2) - first(0), first(3) - first(2)), (8_288, 8_288), "0.518 ms");
 }
 
-/// RU 2704486: the orders of a tick come while the tick before it runs.
+/// RU 2704486: the packet of a tick is sent during the previous tick.
 #[test]
 fn the_patents_16_motors_get_each_packet_one_tick_early() {
     let made = Made::preset("patent-2019-sixteen-motors");
@@ -400,7 +400,7 @@ fn the_patents_16_motors_get_each_packet_one_tick_early() {
         assert!(pair[1].start > pair[0].tick_start.expect("it runs"), "while the tick before it runs");
         assert!(pair[1].end < pair[0].tick_end.expect("it ends"), "{pair:?}");
     }
-    // Packet 1 goes right, packet 2 the same way back, in packet 3 channel i makes i + 1, odd counts to the right.
+    // Packet 1 moves right, packet 2 moves back; in packet 3 channel i makes i + 1 steps, odd numbers to the right.
     for channel in 0..16 {
         let count = i32::from(channel) + 1;
         let all = made.steps(channel);
@@ -419,7 +419,7 @@ fn assert_ticks_follow_each_other(made: &Made) {
     }
 }
 
-/// Every `.rs` file below a folder, whole.
+/// The text of every `.rs` file in a folder.
 fn sources(folder: &Path, into: &mut String) {
     for entry in fs::read_dir(folder).expect("the folder can be read") {
         let path = entry.expect("an entry").path();
@@ -439,7 +439,7 @@ fn every_test_named_in_the_list_of_figures_exists() {
     for folder in ["core", "cli/tests", "tests/src", "tests/tests"] {
         sources(&root.join(folder), &mut all);
     }
-    // Every second piece between marks of code; names of tests have no spaces, and at least three words.
+    // Every second part between code marks; names of tests have no spaces, and at least three words.
     let names = list.split('`').skip(1).step_by(2).filter(|name| {
         name.matches('_').count() > 2 && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
     });

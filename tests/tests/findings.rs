@@ -1,12 +1,12 @@
-//! What fuzzing found stays found: every input of `tests/findings/` goes through the check that it once broke, and with
-//! them the seeds and some inputs of chance, so that a check that breaks is seen without fuzzing.
+//! Regression tests of fuzzing: every input of `tests/findings/` passes the check that it once violated. So do the seeds and
+//! some random inputs, so that a broken check is detected without fuzzing.
 
 use proptest::prelude::*;
 use std::{fs, panic::catch_unwind, path::Path};
 use stepscope_tests::effort;
 use stepscope_tests::fuzzing::{TARGETS, Target};
 
-/// All inputs that break the target's check: name, and what they stand for.
+/// All inputs that fail the target's check: name and description.
 fn broken(target: &Target, inputs: impl IntoIterator<Item = (String, Vec<u8>)>) -> Vec<String> {
     let breaks = |(name, bytes): (String, Vec<u8>)| {
         let broken = catch_unwind(|| (target.check)(&bytes)).is_err();
@@ -38,12 +38,12 @@ fn every_target_has_seeds_and_they_pass() {
             target.name
         );
         assert_eq!(target.name == "capture", words.contains("$timescale"), "{}", target.name);
-        // libFuzzer takes words of up to 64 bytes.
+        // libFuzzer accepts words of up to 64 bytes.
         assert!(words.iter().all(|word| (1..=64).contains(&word.len())), "{words:?}");
     }
 }
 
-/// libFuzzer runs what the table above says, and nothing else.
+/// libFuzzer runs exactly the targets of the table above.
 #[test]
 fn each_target_has_its_own_binary() {
     let fuzz = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz");
@@ -60,7 +60,7 @@ fn each_target_has_its_own_binary() {
     }
 }
 
-/// The seed with some of its bytes changed, as libFuzzer's first steps do.
+/// The seed with some changed bytes, as in libFuzzer's first steps.
 fn inputs() -> impl Strategy<Value = (usize, Vec<u8>)> {
     let all: Vec<(usize, Vec<u8>)> = (0..TARGETS.len())
         .flat_map(|target| (TARGETS[target].seeds)().into_iter().map(move |seed| (target, seed)))

@@ -1,5 +1,5 @@
-//! The golden cases, natively: at both speeds of DESIGN A2. `STEPSCOPE_BLESS=1` writes what the core
-//! gives into the cases' files; look at the difference before you commit it.
+//! The golden cases, natively, at both speeds of DESIGN A2. `STEPSCOPE_BLESS=1` writes the results of the core
+//! to the cases' files; check the difference before you commit it.
 
 use std::{env, fs, io, path::Path};
 use stepscope_core::scenario::presets::{CONTROLLER_PRESETS, PRESETS};

@@ -1,7 +1,6 @@
-//! Scenarios and links from strangers: whatever stands in them, the core answers, and what it accepts is work of a size
-//! that was bounded before (PAGE "Share link").
+//! Untrusted scenarios and links: any input gets a result, and accepted ones have bounded work (PAGE "Share link").
 //!
-//! Time is not measured here. A reading is bounded because its text is; a run because its cost is known and limited.
+//! Time is not measured. The work of reading is bounded by the length of the text, that of a run by its computed cost.
 
 use miniz_oxide::deflate::compress_to_vec;
 use proptest::{prelude::*, sample::Index};
@@ -20,7 +19,7 @@ use stepscope_tests::{
     scenarios::{driven, segmented, small, typed},
 };
 
-/// Any JSON, with the names that scenarios use.
+/// Any JSON, with the names of scenarios.
 fn value() -> impl Strategy<Value = Value> {
     let name = prop_oneof![
         2 => prop::sample::select(vec!["steps", "mm", "bus", "source", "motion", "moves", "bytes", "__proto__", ""]),
@@ -32,7 +31,7 @@ fn value() -> impl Strategy<Value = Value> {
         any::<f64>().prop_map(Value::from),
         any::<i64>().prop_map(Value::from),
         any::<u64>().prop_map(Value::from),
-        // Numbers that no type holds; see `print`.
+        // Numbers that no type can represent; see `print`.
         prop::sample::select(vec!["@1e999", "@-1e999", "@123456789012345678901234567890", "@1e-999", "@-0"])
             .prop_map(Value::from),
         prop::sample::select(vec!["", "80", "8", "burst", "\u{0}", "𝄞", "-1", "ten"]).prop_map(Value::from),
@@ -49,7 +48,7 @@ fn value() -> impl Strategy<Value = Value> {
     })
 }
 
-/// JSON text; texts that begin with @ are numbers as they stand.
+/// JSON text; texts that begin with @ are printed as numbers.
 fn print(value: &Value) -> String {
     let mut text = value.to_string();
     while let Some(start) = text.find("\"@") {
@@ -66,7 +65,7 @@ enum Change {
     Remove(Index),
     Add(Index, Value),
     Nest(Index, usize),
-    /// A number, by another one of its kind.
+    /// A number is replaced by another one of its kind.
     Number(Index, f64),
 }
 
@@ -83,7 +82,7 @@ fn change() -> impl Strategy<Value = Change> {
     ]
 }
 
-/// Paths to all values in a document that `which` takes.
+/// Paths to all values in a document that `which` accepts.
 fn paths(value: &Value, which: fn(&Value) -> bool) -> Vec<String> {
     let below = |(name, inner): (String, &Value)| {
         paths(inner, which).into_iter().map(move |path| format!("/{name}{path}")).collect::<Vec<_>>()
@@ -131,14 +130,14 @@ fn apply(document: &mut Value, change: &Change) {
                 *place = json!([place.take()]);
             }
         }
-        // A whole number stays one, so that it is judged and not only refused for its type.
+        // An integer stays one, so that its value is validated and not only its type.
         Change::Number(_, number) => {
             *place = if place.is_f64() { json!(number) } else { json!(*number as u64) }
         }
     }
 }
 
-/// A scenario's JSON with some changes; with only numbers changed it is often still a scenario.
+/// A scenario's JSON with some changes; if only numbers change, it is often still valid.
 fn changed(scenario: &Scenario, changes: &[Change]) -> String {
     let mut document: Value = serde_json::from_str(&scenario.to_json()).unwrap_or_default();
     changes.iter().for_each(|change| apply(&mut document, change));
@@ -163,7 +162,7 @@ proptest! {
         let _ = judge(&changed(&scenario, &changes));
     }
 
-    /// Where it holds it is over soon: so many cycles, and so many grid steps of all motors, were known before.
+    /// A valid scenario has short runs: its cycles, and the grid steps of all motors, are computed before.
     #[test]
     fn plants_of_any_numbers_run_with_the_same_bits(scenario in driven()) {
         if let Ok(experiment) = judge(&scenario.to_json())
@@ -203,11 +202,11 @@ proptest! {
             characters.splice(at..=at, with.chars());
         }
         let changed: String = characters.into_iter().collect();
-        // A CRC-32 finds all but one in four thousand million of such.
+        // A CRC-32 detects all but one in four thousand million of these.
         prop_assert!(changed == link || decode(&changed).is_err(), "{}", changed);
     }
 
-    /// Only numbers change, so many of these are accepted: what they cost is known and limited.
+    /// Only numbers change, so many of these are valid: their cost is computed and limited.
     #[test]
     fn accepted_scenarios_have_bounded_work(
         preset in prop::sample::select(PRESETS),

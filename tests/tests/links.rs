@@ -1,8 +1,8 @@
-//! Links that were published open for ever: `tests/links/v<version>.txt` holds, one a line, a link
-//! of each format that was ever written and the scenario that it means, in canonical JSON. Where a link
-//! carries its sender's digests, the run is still the same, but for those of [`OTHER_RUNS`].
+//! Published links open forever. `tests/links/v<version>.txt` has one line per link: a link of each format that was
+//! ever written, and its scenario in canonical JSON. If a link has its sender's digests, the run is still the same,
+//! except for those of [`OTHER_RUNS`].
 //!
-//! Lines are only ever added. A new version gets a new file; the old ones then test its upgraders.
+//! Lines are only added. A new version gets a new file; the old files then test its upgrades.
 
 use std::{collections::BTreeSet, fmt::Write as _, fs, path::PathBuf};
 use stepscope_core::{
@@ -18,9 +18,9 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// Published links whose run is another one today, because the framed host's policy changed, told by the check of their
-/// digests: each still opens as the scenario that it meant, and whoever verifies it is told where the runs part. Nothing
-/// but a decision that docs/decisions.md has may add a line.
+/// Published links whose run has changed, because the framed host's policy changed, identified by the CRC of their
+/// digests: each still opens as its scenario, and `--verify` reports where the runs differ. Only a decision in
+/// docs/decisions.md may add a line.
 const OTHER_RUNS: &[(&str, &str)] = &[
     ("82bd8736", "a framed link: the host asks for positions first and last"),
     ("02482e43", "a framed link on a noisy line: as above"),
@@ -46,7 +46,7 @@ fn every_published_link_opens_as_its_scenario() {
     assert!(links >= PRESETS.len(), "only {links} links");
 }
 
-/// The link of a scenario is part of what was published: two people who share the same experiment
+/// The text of a scenario's link is part of the published format: two people who share the same experiment
 /// get the same text.
 #[test]
 fn links_of_the_current_version_are_written_unchanged() {
@@ -90,7 +90,7 @@ fn published_fingerprints_match_and_other_runs_are_reported() {
     assert_eq!(others.len(), OTHER_RUNS.len(), "one is no published link's: {others:?}");
 }
 
-/// Prints the lines of today's presets, to add them to the file of their version:
+/// Prints the lines of the current presets, to add them to the file of their version:
 /// `STEPSCOPE_BLESS=1 cargo test -p stepscope-tests links:: -- --nocapture`.
 #[test]
 fn prints_links_of_the_presets_on_request() {

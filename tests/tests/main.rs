@@ -1,5 +1,5 @@
-//! The house as a whole, natively: golden cases, the contract beside its oracles, the documents' numbers, properties, links, the
-//! order of the house. One program of all these tests, so that it is linked once; `page` is another.
+//! Native tests of the whole project: golden cases, comparison with the independent models, the papers' figures, properties,
+//! links, and the architecture. One program, so that it is linked once; `page` is another one.
 #![cfg(not(any(target_arch = "wasm32", target_os = "none")))]
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used, reason = "a test fails by panicking")]
 

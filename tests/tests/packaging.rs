@@ -1,4 +1,4 @@
-//! The library crates as packages: their metadata, their dependencies, and examples in their documentation. `cargo xtask
+//! The library crates as packages: metadata, dependencies, and examples in their documentation. `cargo xtask
 //! test --only package` packs and builds them.
 
 use serde_json::Value;
@@ -25,7 +25,7 @@ const LIBRARIES: [(&str, &str); 10] = [
 ];
 const LICENSES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
-/// All crates on a microcontroller that uses `Device`.
+/// All crates that a microcontroller with `Device` needs.
 const PERIPHERAL: [&str; 11] = [
     "byteorder",
     "cobs",
@@ -55,7 +55,7 @@ fn cargo(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Names of a package and its dependencies on the target, without those that only the build needs.
+/// Names of a package and its dependencies on the target, without build dependencies.
 fn tree(package: &str) -> BTreeSet<String> {
     let arguments =
         "tree --locked --offline --edges normal,no-proc-macro --target thumbv7m-none-eabi --prefix none";
@@ -110,7 +110,7 @@ fn each_library_has_its_metadata_and_licenses() {
             assert_eq!(own, read(&root().join(license)), "{folder}/{license} differs from the workspace's");
         }
         for dependency in package["dependencies"].as_array().unwrap() {
-            // Packing needs versions, except of dependencies for tests.
+            // Packing requires versions, except for dependencies of tests.
             let packed = dependency["kind"].is_null() && dependency["path"].is_string();
             let expected = format!("^{}", package["version"].as_str().unwrap());
             assert!(
@@ -140,7 +140,7 @@ fn documentation(attributes: &[Attribute], folder: &Path) -> String {
     attributes.iter().filter_map(|attribute| documentation_of(attribute, folder)).collect()
 }
 
-/// A line of documentation, or the file that it includes.
+/// A line of documentation, or the included file.
 fn documentation_of(attribute: &Attribute, folder: &Path) -> Option<String> {
     let Meta::NameValue(meta) = &attribute.meta else { return None };
     if !meta.path.is_ident("doc") {
@@ -154,7 +154,7 @@ fn documentation_of(attribute: &Attribute, folder: &Path) -> Option<String> {
     }
 }
 
-/// Code of the examples that `cargo test` runs, without the marks of hidden lines.
+/// Code of the examples that `cargo test` runs, with hidden lines.
 fn run_examples(documentation: &str) -> String {
     let (mut code, mut block) = (String::new(), None);
     for line in documentation.lines().map(str::trim) {
@@ -174,7 +174,7 @@ struct Module {
     documentation: String,
 }
 
-/// The public modules of a crate in files, the first page first, and the paths that the first page re-exports.
+/// The public modules of a crate in files, starting with the first page, and the paths that it re-exports.
 fn modules(folder: &str) -> (Vec<Module>, Vec<String>) {
     let (mut found, mut exported) = (Vec::new(), Vec::new());
     let mut queue = vec![(String::new(), root().join(folder).join("src").join("lib.rs"))];
@@ -205,7 +205,7 @@ fn is_public(visibility: &Visibility) -> bool {
     matches!(visibility, Visibility::Public(_))
 }
 
-/// All paths of a `use`.
+/// All paths of a `use` item.
 fn paths(before: &str, tree: &UseTree) -> Vec<String> {
     match tree {
         UseTree::Path(path) => paths(&format!("{before}{}::", path.ident), &path.tree),
@@ -232,7 +232,7 @@ fn referenced(documentation: &str) -> Vec<String> {
     found
 }
 
-/// A library user starts on a crate's first page, and goes on to the modules that it links to, re-exports from, or
+/// A library user starts on a crate's first page, and continues with the modules that it links to, re-exports, or
 /// uses in its examples. The first page of `stepscope-core` leads to the modules of all crates.
 #[test]
 fn first_pages_and_their_modules_have_a_tested_example() {

@@ -1,5 +1,5 @@
-//! Runs that drive a plant: the rows of the contract's F10 that need a motion or the way back (F7), equal speeds, slices, and
-//! sources of all kinds.
+//! Runs with a plant: the rows of the contract's F10 that need a motion or feedback (F7), equal results at all speeds and in
+//! slices, and sources of all kinds.
 
 use stepscope_core::{
     inspect::plant::outcome::verdict,
@@ -19,7 +19,7 @@ use stepscope_core::{
 
 use stepscope_tests::plant_digests::plant_cases;
 
-/// F10's patent set, on axes of full steps.
+/// F10's motors of the patent's figures, on axes of full steps.
 const PATENT_MOTOR: &str = r#"{"full_step_deg":1.8,"microsteps":1,"motor":{"inductance_mh":5.3,"holding_torque_mn_m":300,
     "load_inertia_g_cm2":100,"friction_mn_m":15,"viscous_un_m_s":1000,"supply_v":27,"drive":{"bridge_ohm":1}}}"#;
 
@@ -39,7 +39,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance, "{found} is not {expected} +- {tolerance}");
 }
 
-/// 3200 steps in 0.4 s with ramps of 0.2 s, by segments, so that its time 0 is cycle 1.
+/// 3200 steps in 0.4 s with ramps of 0.2 s, in segments, so that time 0 is cycle 1.
 fn one_turn(motor: &str, plant: &str) -> String {
     format!(
         r#"{{"source":{{"motion":{{"engine":"segments","axes":[{{"moves":[
@@ -49,7 +49,7 @@ fn one_turn(motor: &str, plant: &str) -> String {
 
 #[test]
 fn a_motor_follows_the_s_curve_despite_a_load() {
-    // Rest errors are taken a while after the last step.
+    // Remaining errors are measured some time after the last step.
     for (motor, following, rest) in [
         ("", 0.078, -0.002),
         (r#""load_torque_mn_m":100"#, 0.311, -0.211),
@@ -80,7 +80,7 @@ fn the_encoder_reads_the_move_every_five_milliseconds() {
             }
         }
     }
-    // Its time 0 in cycle 1600, as F10 has it.
+    // Time 0 is cycle 1600, as in F10.
     let dwell = r#"{"dwell":{"duration_s":0.0000999375}},"#;
     let json = one_turn("", "").replace(r#"{"cosine""#, &format!(r#"{dwell}{{"cosine""#));
     let run = run(&json, Codes(vec![]));
@@ -96,8 +96,8 @@ fn the_encoder_reads_the_move_every_five_milliseconds() {
     }
 }
 
-/// Song's table 5, as its encoder reads it every 5 ms: how far the turn's time is off 0.4 s, its distance in codes, and by
-/// how many codes it goes past its place.
+/// Song's table 5 by its encoder, read every 5 ms: the difference of the turn's time from 0.4 s, the distance in codes, and
+/// the overshoot in codes.
 fn read_back(moves: &str) -> (f64, i32, i32) {
     struct Codes(Vec<i32>);
     impl Observer for Codes {
@@ -111,7 +111,7 @@ fn read_back(moves: &str) -> (f64, i32, i32) {
         r#"{{"plant":{{}},"source":{{"motion":{{"engine":"segments","axes":[{{"moves":[{moves}],"motor":{{}}}}]}}}}}}"#
     );
     let codes = run(&json, Codes(vec![])).into_parts().remove(0).1.0;
-    // Added up, as the document does it: no step between two readings is half a turn.
+    // Differences are summed, as in the paper: no difference between two readings is half a turn.
     let mut place = 0;
     let mut before = 0;
     let places: Vec<i32> = codes
@@ -123,7 +123,7 @@ fn read_back(moves: &str) -> (f64, i32, i32) {
         })
         .collect();
     let end = *places.last().expect("readings");
-    // It moves from the last reading at rest to the first of those that stay within a code of the end.
+    // From the last reading at standstill to the first of those within a code of the end.
     let first = places.iter().position(|place| place.abs() > 1).expect("it moves");
     let last = places.iter().rposition(|place| (place - end).abs() > 1).expect("it stops") + 1;
     let seconds = (last + 1 - first) as f64 * 0.005;
@@ -134,10 +134,10 @@ fn read_back(moves: &str) -> (f64, i32, i32) {
 fn the_encoder_reproduces_table_5_of_song_2021() {
     let cosine = r#"{"cosine":{"distance":{"deg":360},"duration_s":0.4,"ramp_s":0.2}}"#;
     let (off, distance, past) = read_back(cosine);
-    // Its first and its last 15 ms are within a code, so the encoder sees 30 ms less; the pulses take 0.4 s to a step.
+    // The first and the last 15 ms are within one code, so the encoder measures 30 ms less; the pulses take 0.4 s.
     near(off, -0.03, 0.0051);
     assert!((distance - 4096).abs() <= 1 && past <= 1, "{distance}, past it by {past}");
-    // The direct start shakes and swings past its place: by two thirds of a full step, 14 codes.
+    // The direct start oscillates and overshoots by two thirds of a full step, 14 codes.
     let direct = r#"{"constant":{"distance":{"deg":360},"speed":{"steps_s":8000}}}"#;
     let (off, distance, past) = read_back(&direct.replace("8000", "19200"));
     assert!((distance - 4096).abs() <= 1, "{distance}");
@@ -146,7 +146,7 @@ fn the_encoder_reproduces_table_5_of_song_2021() {
     assert!(rest > 0.01, "it rings for {rest} s after its last step");
 }
 
-/// Four patent-set motors with a self-test of Ts = 32768.
+/// Four motors of the patent's figures with a self-test of Ts = 32768.
 fn self_test(plant: &str, bus: &str) -> String {
     format!(
         r#"{{"bus":{{"channels":4,"slots":4,"step_period_cycles":32768,"self_test_cycles":3145729,"pulse_phasing":"staggered"{bus}}},
@@ -165,7 +165,7 @@ fn a_self_test_measures_the_settling_time_of_each_channel_and_staggers_by_it() {
     }
     assert_eq!(found, [8479, 8207, 8255, 8223]);
     assert_eq!(run.faults(), Faults::default());
-    // Seen by firmware, and by the pulses: min(8479, 32768/4) apart.
+    // Shown in registers and by the pulses: min(8479, 32768/4) apart.
     let device = run.device();
     assert_eq!(device.read(stepscope_registers::settle::OFFSET), 8479);
     let trace = &run.into_parts()[0].0;
@@ -180,7 +180,7 @@ fn a_self_test_measures_the_settling_time_of_each_channel_and_staggers_by_it() {
 
 #[test]
 fn a_self_test_without_a_result_uses_t_step_and_reports_it() {
-    // A converter with one code, 0 or not: P is 0. And a sensor so slow that a motor that hums on does not settle in T_step.
+    // A converter that always has the same code: P is 0. And a sensor so slow that the current does not settle in T_step.
     let sensors = [
         r#""current_sensor":{"lsb_a":1000}"#,
         r#""idle_ma":100,"current_sensor":{"lsb_a":0.01,"adc_max":7}"#,
@@ -195,7 +195,7 @@ fn a_self_test_without_a_result_uses_t_step_and_reports_it() {
     }
 }
 
-/// A stand-alone controller does not react to an overload (F7): its edges are those without a protection.
+/// A stand-alone controller does not react to an overload (F7): its edges are the same without a protection.
 #[test]
 fn a_stand_alone_controller_does_not_react_to_an_overload() {
     let scenario = |protection: &str| {
@@ -225,7 +225,7 @@ fn a_self_test_stopped_during_boot_has_no_result() {
     assert_eq!(run.positions()[0], 1, "the step that rose counts");
 }
 
-/// Four default motors in full steps, segments of four steps from 1600, channels `apart` cycles after each other.
+/// Four default motors in full steps, segments of four steps from 1600 on, channels `apart` cycles after each other.
 fn overload(apart: u64) -> String {
     let list = |channel: u64| {
         let (start, interval) = (1600 + channel * apart, 32_768_u64 << 16);
@@ -257,7 +257,7 @@ fn an_overload_ends_segments_and_staggering_prevents_it() {
     assert_eq!((staggered.overload(0), staggered.positions()[0]), (None, 4));
 }
 
-/// As [`overload`], by ticks of packets.
+/// Like [`overload`], with ticks of packets.
 fn overload_by_ticks(line: &str, channels: usize) -> String {
     let packet = "81".repeat(channels);
     format!(
@@ -291,7 +291,7 @@ fn an_overload_stops_a_controller_like_stop() {
     }
 }
 
-/// A run at both speeds and in slices: digests of trace and plant, and what else it tells.
+/// A run at both speeds and in slices: digests of trace and plant, and other results.
 fn all_ways(json: &str, controllers: usize) -> Vec<Vec<(u64, u64)>> {
     let experiment = experiment(json);
     let parts = || (0..controllers).map(|_| (Digest::default(), ())).collect::<Vec<_>>();
@@ -312,12 +312,12 @@ fn all_ways(json: &str, controllers: usize) -> Vec<Vec<(u64, u64)>> {
 
 #[test]
 fn speeds_and_slices_change_no_edge_and_no_plant_value() {
-    // A slow clock, so that clock by clock is no long way.
+    // A slow clock, so that a run clock by clock is short.
     let small = |rest: &str| format!(r#"{{"clock_hz":1000000,"line":{{"baud":38400{rest}"#);
     let turn = r#""source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":16},"duration_s":0.04,"ramp_s":0.02}}]}]}}"#;
     let bus = r#""bus":{"slots":10,"step_period_cycles":1000,"pulse_width_cycles":10,"dir_setup_cycles":10}"#;
     let weak = r#""protection":{"threshold_a":0.16,"samples":2},"tail_s":0.005"#;
-    // An overload in the last cycle, which makes one more.
+    // An overload in the last cycle, which adds one cycle.
     let late = |samples: u32, tail_s: f64| {
         format!(
             r#"{{"clock_hz":1000000,"bus":{{"pulse_width_cycles":10,"dir_setup_cycles":10}},"source":{{"segments":{{"channels":[
@@ -402,7 +402,7 @@ fn preset(id: &str) -> &'static str {
     PLANT_PRESETS.iter().find(|preset| preset.id == id).expect("it is a preset").json
 }
 
-/// F10's "one step", with what its note says of it.
+/// F10's "one step", and the figures of its note.
 #[test]
 fn each_preset_has_the_results_of_its_note() {
     let result = |id: &str| {
@@ -464,7 +464,7 @@ fn a_load_can_turn_a_held_rotor_by_whole_periods() {
     let json = CONTROLLER_PLANT_PRESETS[0].json;
     let run = run(json, ());
     let machine = run.stand_alone().expect("a controller");
-    // Where the power went away: the controller has the very step.
+    // At the power loss the controller saved the exact step.
     assert_eq!((machine.position(0), machine.trust(0)), (Some(1619), Some(1)));
     let off = run.results()[0].motors[0].following_error;
     let plant = run.plant(0).expect("a motor");

@@ -1,5 +1,5 @@
-//! The plant against an independent model (PLANT.md F1 to F8): random motors, drives, supplies, sensors and edges, of which
-//! every point, code, slip and digest is the same to the bit, in whatever portions a run is told.
+//! Compares the plant with an independent model (PLANT.md F1 to F8): for random motors, drivers, supplies, sensors and edges,
+//! every point, code, slip and digest is the same to the bit, however the run is divided.
 
 use stepscope_core::{
     peripheral::{
@@ -16,7 +16,7 @@ use stepscope_core::{
 };
 use stepscope_tests::plant_oracle::{self as oracle, Case, Run, is_refused};
 
-/// Random cases; `PROPTEST_CASES` sets another number.
+/// Number of random cases, unless `PROPTEST_CASES` sets another.
 const CASES: u64 = 150;
 
 fn cases() -> u64 {
@@ -108,7 +108,7 @@ fn setup(case: &Case) -> Setup {
     }
 }
 
-/// Holds each point to the oracle's.
+/// Compares each point with the model's.
 struct Held<'r> {
     run: &'r Run,
     points: usize,
@@ -168,7 +168,7 @@ impl Observer for Held<'_> {
     }
 }
 
-/// A motor behind every channel, as a crate's plant has it.
+/// A motor on every channel, as in the plant of the crate.
 fn filled(mut case: Case) -> Case {
     let first = case.motors.iter().flatten().next().cloned().unwrap_or_default();
     case.motors.iter_mut().for_each(|motor| {
@@ -177,13 +177,13 @@ fn filled(mut case: Case) -> Case {
     case
 }
 
-/// Whether a rotor has gone further than any real one: F3's limits leave out how stiff a torque is that goes round with the
-/// load, and a greater one than the grid can follow throws it. What comes then ends in not-a-number, whose bits are nobody's.
+/// Whether a rotor has moved further than any real one. F3's limits do not include the stiffness of a torque that depends on
+/// the load angle; if it is too large for the grid, it accelerates the rotor without limit, and values end as NaN.
 fn has_flown_away(run: &Run) -> bool {
     run.points.iter().any(|point| point.motors.iter().any(|motor| motor.x.is_nan() || motor.x.abs() > 1e9))
 }
 
-/// Runs a case, with a look at the time every so many cycles between its records.
+/// Runs a case, and checks the time every given number of cycles between its records.
 fn check(case: &Case, run: &Run, every: u64, what: &str) {
     let setup = setup(case);
     let mut plant = Plant::new(&setup).unwrap_or_else(|refused| panic!("{what} is refused: {refused:?}"));
@@ -213,7 +213,7 @@ fn check(case: &Case, run: &Run, every: u64, what: &str) {
             (found.bus, expected.bus),
             (found.copper, expected.copper),
             (found.diodes, expected.diodes),
-            // Each counts the load torque and the coupling's damper in a place of its own.
+            // The crate and the model count the load torque and the coupling's damper under different names.
             (
                 found.friction + found.viscous + found.load,
                 expected.friction + expected.viscous + expected.load,
@@ -244,8 +244,8 @@ fn every_point_matches_the_independent_model() {
     assert!(flown * 50 <= cases(), "{flown} of {} cases flew away", cases());
 }
 
-/// F7: ENABLE in cycle p begins the count anew, and a conversion in p, which is looked at last, counts already; EN rises in
-/// p + 1.
+/// F7: ENABLE in cycle p restarts the count of an overload. A conversion in p, the last step of the cycle, counts
+/// already; EN rises in p + 1.
 #[test]
 fn enable_restarts_the_count_of_an_overload() {
     let en = 1 << 32;

@@ -1,5 +1,5 @@
-//! What holds for every scenario, over random ones of all sources: all speeds give the same run (DESIGN A2), a run
-//! costs no more than was said before it, and a scenario survives its way through JSON and links (PAGE "Share link").
+//! Properties of random scenarios of all sources: all speeds have the same results (DESIGN A2), no run exceeds its computed
+//! cost, and scenarios round-trip through JSON and links (PAGE "Share link").
 
 use proptest::prelude::*;
 use stepscope_core::{
@@ -38,7 +38,7 @@ proptest! {
         equivalence::check(&scenario, &experiment, Ways { slices: &slices, hurry: 100, most_clocked: u64::MAX });
     }
 
-    /// Not only what a scenario can put on the line: any levels at all, such as a firmware's test would feed.
+    /// Any levels on the line, as in a test of firmware, not only those of a scenario.
     #[test]
     fn any_line_is_accepted_and_skipping_changes_nothing(
         scenario in small(),
@@ -83,7 +83,7 @@ proptest! {
         }
     }
 
-    /// Equal is equal: however its numbers were written.
+    /// Equal scenarios are equal, however their numbers are written.
     #[test]
     fn equal_scenarios_have_the_same_link(scenario in typed()) {
         let again = Scenario::from_json(&without_signs_of_zero(&scenario.to_json())).expect("reads");

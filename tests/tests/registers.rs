@@ -1,5 +1,5 @@
-//! The registers: accesses at any cycles leave both speeds of DESIGN A2 the same, and a command by register does what
-//! the frame of DESIGN A6 does that ends in the same cycle.
+//! The registers: accesses in any cycle have equal results at both speeds of DESIGN A2, and a command by register equals
+//! a frame of DESIGN A6 that ends in the same cycle.
 
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use stepscope_registers::{
 };
 use stepscope_tests::{effort, scenarios::small};
 
-/// All that a run leaves.
+/// All results of a run.
 #[derive(Debug, Default, PartialEq)]
 struct Left {
     trace: Vec<Record>,
@@ -37,7 +37,7 @@ impl Sink for Left {
     }
 }
 
-/// What firmware does in a cycle.
+/// Accesses of firmware in a cycle.
 #[derive(Clone, Copy, Debug)]
 enum Access {
     Read(u32),
@@ -63,7 +63,7 @@ fn access(channels: u8, most_steps: u8) -> impl Strategy<Value = Access> {
     ]
 }
 
-/// What goes over the line: bytes for either protocol.
+/// Activity on the line: bytes of either protocol.
 fn sends() -> impl Strategy<Value = Vec<(u64, Vec<u8>)>> {
     let bytes = prop_oneof![
         3 => prop::collection::vec(0..=10_u8, 1..4),
@@ -76,7 +76,7 @@ fn sends() -> impl Strategy<Value = Vec<(u64, Vec<u8>)>> {
 struct Case {
     config: Config,
     line: Line,
-    /// By cycle.
+    /// Accesses by cycle.
     accesses: Vec<(u64, Access)>,
     end: u64,
 }
@@ -101,7 +101,7 @@ fn case(scenario: &Scenario, sends: &[(u64, Vec<u8>)], accesses: &[(u64, Access)
 }
 
 impl Case {
-    /// Runs the case; `pass` lets time pass, at most to the given cycle, with the line at the given level.
+    /// Runs the case; `pass` advances the time, at most to the given cycle, with the line at the given level.
     fn run(&self, mut pass: impl FnMut(&mut Device, bool, Instant, &mut Left)) -> (Left, Vec<u32>, Device) {
         let (mut left, mut read) = (Left::default(), Vec::new());
         let (mut device, mut line) = (Device::new(&self.config), self.line.clone());
@@ -173,7 +173,7 @@ proptest! {
     }
 }
 
-/// A command that a frame gives and a register too.
+/// A command that both a frame and a register can give.
 #[derive(Clone, Copy, Debug)]
 enum Command {
     Enable,
@@ -206,8 +206,8 @@ impl Command {
     }
 }
 
-/// What the commands did, and with what result. By frames: each is a frame to all, which is not answered. By registers:
-/// in place of each goes a frame of the same length that changes nothing, and in the cycle in which it ends the
+/// The commands and their results. By frames: each is a frame to all, without a reply. By registers:
+/// each is replaced by a frame of the same length that changes nothing, and in the cycle of its end the
 /// registers are written.
 fn commanded(
     scenario: &Scenario,
@@ -279,7 +279,7 @@ proptest! {
         scenario.line.protocol = Protocol::Framed;
         scenario.line.receiver_baud = None;
         scenario.bus.channels = 2;
-        // Room for staggered pulses of two channels.
+        // Space for staggered pulses of two channels.
         scenario.bus.step_period_cycles = scenario.bus.step_period_cycles.max(50);
         prop_assume!(Config::new(scenario.clock_hz, &scenario.bus, &scenario.line.serial()).is_ok());
         let (trace, results, device) = commanded(&scenario, &commands, false);

@@ -1,5 +1,5 @@
-//! Several controllers on one line, raw and framed, with noise: every speed gives each of them the same run, what was
-//! sent can be sent again, and on a framed line no tick is wrong, duplicated or out of order.
+//! Several controllers on one line, raw and framed, with noise: all speeds have the same results, a run can be
+//! replayed, and on a framed line no tick is wrong, duplicated or out of order.
 
 use proptest::prelude::*;
 use stepscope_core::{
@@ -17,7 +17,7 @@ use stepscope_tests::{
     scenarios::shared,
 };
 
-/// The orders of the ticks that began.
+/// The commands of the ticks that began.
 fn executed(left: &Left, channels: usize) -> Vec<u8> {
     let ticks = left.events.iter().filter_map(|(_, event)| match event {
         Event::TickStart { commands } => Some(commands[..channels].to_vec()),
@@ -26,7 +26,7 @@ fn executed(left: &Left, channels: usize) -> Vec<u8> {
     ticks.flatten().collect()
 }
 
-/// The same controllers on a line to which is done what was done in `run`, and nothing else.
+/// The same controllers on a line with exactly the bytes and levels of `run`.
 fn again(scenario: &Scenario, run: &Run) -> Scenario {
     let mut again = scenario.clone();
     let send = |send: Sent<'_>| ScriptedSend {
@@ -50,7 +50,7 @@ fn again(scenario: &Scenario, run: &Run) -> Scenario {
     again
 }
 
-/// A run that pauses at its last record, DE's fall after a reply, is over: the forced level changes nothing.
+/// A run that pauses at its last record, DE's fall after a reply, has ended: the forced level changes nothing.
 #[test]
 fn a_level_forced_after_the_last_reply_lengthens_no_run() {
     let scenario = Scenario::from_json(

@@ -1,4 +1,4 @@
-//! Contrasts of the page's colours (WCAG 1.4.3 and 1.4.11), computed from `web/style/theme.css`.
+//! Contrasts of the page's colors (WCAG 1.4.3 and 1.4.11), computed from `web/style/theme.css`.
 
 use std::{collections::BTreeMap, fs, path::Path};
 
@@ -9,7 +9,7 @@ fn theme() -> String {
     fs::read_to_string(path).expect("the theme is there")
 }
 
-/// The custom properties that the rule with this selector gives colours to.
+/// The custom properties whose colors the rule with this selector sets.
 fn colours(css: &str, selector: &str) -> Colours {
     let (_, rest) = css.split_once(&format!("{selector} {{")).unwrap_or_else(|| panic!("no rule {selector}"));
     let (block, _) = rest.split_once('}').expect("the rule ends");
@@ -40,13 +40,13 @@ fn luminance(colour: [u8; 3]) -> f64 {
     0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 
-/// 1 for equal colours to 21 for black on white.
+/// 1 for equal colors to 21 for black on white.
 fn contrast(one: [u8; 3], other: [u8; 3]) -> f64 {
     let (one, other) = (luminance(one), luminance(other));
     (one.max(other) + 0.05) / (one.min(other) + 0.05)
 }
 
-/// Fails with every pair of these colours and grounds that has a lower contrast.
+/// Fails with all pairs of these colors and backgrounds that have a lower contrast.
 fn at_least(least: f64, names: &[&str], grounds: &[&str]) {
     let mut low = Vec::new();
     for (theme, colours) in [("light", light()), ("dark", dark())] {
@@ -94,6 +94,6 @@ fn curves_and_focus_have_a_contrast_of_at_least_3() {
     at_least(3.0, &curves, &["pane"]);
     at_least(3.0, &["cursor-a", "cursor-b", "accent"], &["pane", "ground"]);
     at_least(3.0, &["focus"], &["pane", "ground", "raised"]);
-    // The chosen row's signals lie on a ground of their own.
+    // The selected row has its own background.
     at_least(3.0, &["step", "dir", "enable", "wire"], &["chosen"]);
 }

@@ -54,7 +54,7 @@ fn thumbnails_show_the_runs_of_their_presets() {
     let recordings = SAMPLES.iter().map(|sample| (sample.id, recording(&runs::recorded(sample))));
     for (id, path) in presets.chain(recordings) {
         assert!((10..MAX_LENGTH).contains(&path.len()), "{id}: {} characters: {path}", path.len());
-        // As the page's formatter writes it.
+        // In the format of the page's formatter.
         let key = if id.contains('-') { format!("\"{id}\"") } else { id.to_owned() };
         let gap = if key.len() + path.len() + "  : \"\",".len() > LINE { "\n    " } else { " " };
         writeln!(text, "  {key}:{gap}\"{path}\",").expect("a string");

@@ -1,30 +1,30 @@
-//! The order of the page's folders, as `web/main.js` draws it, held: no file imports what stands to its right.
+//! The order of the page's folders, as listed in `web/main.js`: no file imports anything to its right.
 //!
-//! Types count as well, though nothing loads for them: who names another's type can't be read, or changed, without it.
-//! Cycles between the files of one folder are the linter's (`web/biome.jsonc`).
+//! Types count as well, although nothing loads for them, because a file depends on the types that it names.
+//! The linter detects circular imports of files in a folder (`web/biome.jsonc`).
 
 use std::{
     fs, io,
     path::{Path, PathBuf},
 };
 
-/// What comes before a specifier, in an import as in a type.
+/// The text before a specifier, in an import or a type.
 const IMPORTS: &[&str] = &["from \"", "import \"", "import(\""];
-/// It imports nothing, and nobody imports it.
+/// It imports nothing, and no file imports it.
 const ALONE: &str = "sw.js";
 
 fn web() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../web")
 }
 
-/// The folders from left to right, and files that stand by themselves.
+/// The folders from left to right, and single files.
 fn order() -> Vec<String> {
     let text = fs::read_to_string(web().join("main.js")).unwrap();
     let line = text.lines().find(|line| line.contains(" -> ")).unwrap().trim_start_matches([' ', '*']);
     line.split(" -> ").map(str::to_owned).collect()
 }
 
-/// All scripts below `folder`, by their paths from `web` on.
+/// All scripts in `folder`, by their paths relative to `web`.
 fn scripts(folder: &Path, below: &str, found: &mut Vec<(String, String)>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
@@ -38,7 +38,7 @@ fn scripts(folder: &Path, below: &str, found: &mut Vec<(String, String)>) -> io:
     Ok(())
 }
 
-/// The files that a script names, by their paths from `web` on.
+/// The files that a script names, by their paths relative to `web`.
 fn imports(path: &str, text: &str) -> Vec<String> {
     let rests = IMPORTS.iter().flat_map(|before| text.split(before).skip(1));
     let names = rests.filter_map(|rest| rest.split('"').next()).filter(|name| name.starts_with('.'));
@@ -58,7 +58,7 @@ fn resolved(path: &str, name: &str) -> String {
     parts.join("/")
 }
 
-/// The folder right below `web` in which a file lies, or the file where it lies in none.
+/// The top folder of a file in `web`, or the file itself.
 fn layer(path: &str) -> &str {
     path.split('/').next().unwrap_or(path)
 }

@@ -1,4 +1,4 @@
-//! The plant beside what mathematics says of its equations: over random motors, and the rows of F10 that are formulas.
+//! The plant compared with formulas: for random motors, and for the rows of F10 that are formulas.
 #![expect(clippy::disallowed_methods, reason = "a second opinion by the platform's mathematics")]
 
 use crate::common::{Each, frictionless, full_steps, near, near_part, one, records, run};
@@ -16,7 +16,7 @@ use stepscope_plant::{
 
 const HZ: f64 = 16e6;
 
-/// The rotor's way from its rest, point by point, after it was put `off` aside.
+/// The rotor's displacement from its equilibrium, point by point, after a displacement of `off`.
 fn rings(setup: &Setup, off: f64, cycles: u64) -> Vec<f64> {
     let mut plant = Plant::new(setup).expect("it holds");
     let state = *plant.state(0).expect("a motor");
@@ -26,7 +26,7 @@ fn rings(setup: &Setup, off: f64, cycles: u64) -> Vec<f64> {
     positions
 }
 
-/// Times of the rises through 0, in samples, and the max value between them.
+/// Times of the rises through 0, in samples, and the maximum between them.
 fn periods(positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let mut rises = vec![];
     for (index, pair) in positions.windows(2).enumerate() {
@@ -37,7 +37,7 @@ fn periods(positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let between = |pair: &[f64]| {
         let (from, to) = (pair[0].ceil() as usize, pair[1].floor() as usize);
         let top = (from..=to).max_by(|&a, &b| positions[a].total_cmp(&positions[b])).expect("a period");
-        // The top of the parabola through three samples.
+        // The vertex of the parabola through three samples.
         let (l, m, r) = (positions[top - 1], positions[top], positions[top + 1]);
         m - (l - r) * (l - r) / (8.0 * (l - 2.0 * m + r))
     };
@@ -55,13 +55,13 @@ fn a_small_oscillation_has_its_frequency_and_decrement() {
     near_part(decrement, 0.1182, 0.01);
 }
 
-/// Where the spectrum of `positions` has its max value within a fiftieth of `guess`, in Hz.
+/// Frequency, in Hz, at which the spectrum of `positions` has its maximum, within a fiftieth of `guess`.
 fn frequency(positions: &[f64], guess: f64) -> f64 {
     let mean = positions.iter().sum::<f64>() / positions.len() as f64;
     let power = |hz: f64| {
         let (mut re, mut im) = (0.0, 0.0);
         for (index, x) in positions.iter().enumerate().step_by(20) {
-            // A Hann window, so that the other mode does not show.
+            // A Hann window suppresses the other mode.
             let window = 1.0 - (TAU * index as f64 / positions.len() as f64).cos();
             let (s, c) = (TAU * hz * index as f64 / 200_000.0).sin_cos();
             re += window * (x - mean) * c;
@@ -105,14 +105,14 @@ fn friction_stops_a_rotor_without_current() {
 /// The mean torque in mN*m at an imposed rate with the rotor `lag` full steps behind.
 fn torque(rate: f64, lag: f64) -> f64 {
     let full_steps_s = rate / 16.0;
-    // Its inertia lets nothing change its speed.
+    // Its inertia keeps the speed constant.
     let motor = MotorModel { rotor_inertia_g_cm2: 1e9, ..frictionless() };
     let mut plant = Plant::new(&one(motor)).expect("it holds");
     let state = *plant.state(0).expect("a motor");
     plant.set_state(0, State { x: -lag, w: full_steps_s, ..state });
     let rises: Vec<u64> =
         (0..(rate * 0.06) as u64).map(|k| 1 + ((k as f64 + 0.5) / rate * HZ) as u64).collect();
-    // Whole electrical periods of four full steps, in its later half.
+    // Whole electrical periods of four full steps, in the second half.
     let period = 4.0 / full_steps_s;
     let (from, to) = (0.02, 0.02 + (0.035 / period).floor().max(1.0) * period);
     let mut speeds = vec![];
@@ -132,8 +132,8 @@ fn torque(rate: f64, lag: f64) -> f64 {
     inertia * (w_1 - w_0) * g / (t_1 - t_0) * 1e3
 }
 
-/// torque.md's curve in mN*m for the default motor at 24 V: the most of all currents of at most 1.5 A and voltages of at
-/// most 24 V.
+/// The curve of torque.md in mN*m for the default motor at 24 V: the maximum over all currents up to 1.5 A and voltages up
+/// to 24 V.
 fn curve(rate: f64) -> f64 {
     let k = 0.4 / (SQRT_2 * 1.5);
     let w = rate / 16.0 * 1.8_f64.to_radians();
@@ -141,13 +141,13 @@ fn curve(rate: f64) -> f64 {
     let mut most = f64::MIN;
     for degrees in 0..36_000 {
         let (s, c) = (f64::from(degrees) * 0.01_f64.to_radians()).sin_cos();
-        // All of the current, where the voltage suffices.
+        // The full current, if the voltage is sufficient.
         let (i_re, i_im) = (1.5 * c, 1.5 * s);
         let (v_re, v_im) = (k * w + r * i_re - x * i_im, r * i_im + x * i_re);
         if v_re.hypot(v_im) <= 24.0 {
             most = most.max(k * i_re);
         }
-        // All of the voltage, where the current is not too great.
+        // The full voltage, if the current is within its limit.
         let (u_re, u_im) = (24.0 * c - k * w, 24.0 * s);
         let z = r * r + x * x;
         let (i_re, i_im) = ((u_re * r + u_im * x) / z, (u_im * r - u_re * x) / z);
@@ -175,7 +175,7 @@ fn torque_is_static_below_the_corner_speed_and_a_square_waves_above() {
     }
 }
 
-/// Motors of the usual sizes that the default grid suits.
+/// Motors of usual sizes, for which the default grid is fine enough.
 fn motors() -> impl Strategy<Value = MotorModel> {
     let electrical = (0.5..4.0, 0.5..5.0, 1.0..10.0);
     let mechanical = (100.0..1000.0, 20.0..300.0, 0.0..300.0, prop::sample::select(vec![0.9, 1.8, 3.6, 7.5]));
@@ -194,7 +194,7 @@ fn motors() -> impl Strategy<Value = MotorModel> {
     })
 }
 
-/// With a supply that never limits the current.
+/// With a supply voltage that never limits the current.
 fn held(motor: MotorModel) -> Setup {
     Setup { supply: Supply { supply_v: 900.0, ..Supply::default() }, ..one(motor) }
 }
@@ -204,7 +204,7 @@ proptest! {
 
     #[test]
     fn a_current_rises_with_the_time_constant_of_its_winding(motor in motors(), supply_v in 5.0..60.0) {
-        // The rotor stands; the supply is too weak for the target, so the phase is held at its voltage.
+        // The rotor is at standstill. The supply is too weak for the target, so the phase has its full voltage.
         let motor = MotorModel { rotor_inertia_g_cm2: 1e9, peak_current_a: 1000.0, ..motor };
         let (r, l) = (motor.resistance_ohm, motor.inductance_mh / 1000.0);
         let setup = Setup { supply: Supply { supply_v, ..Supply::default() }, ..one(motor) };
@@ -253,7 +253,7 @@ proptest! {
         let expected = inertia * w * w * g / (2.0 * 0.02);
         prop_assume!(inertia * w * g / 0.02 < 0.9);
         let found = plant.state(0).expect("a motor").x;
-        // It stops within a grid step.
+        // It stops within one grid step.
         prop_assert!((found - expected).abs() <= 1e-5 * w + 1e-9 * expected, "{found} {expected}");
     }
 
@@ -294,7 +294,7 @@ proptest! {
             ..motor
         };
         let supply = Supply { supply_v: 48.0, buffer_uf: buffer.then_some(470.0), ..Supply::default() };
-        // The strongest of these motors come to 2e-5 on a grid of 5 us.
+        // The strongest of these motors have an error of 2e-5 on a grid of 5 us.
         let setup = Setup { supply, step_cycles: Some(40), ..one(motor) };
         let mut records = records(&[(1..200).map(|k| k * (16e6 / rate) as u64).collect()], 16);
         if off {
@@ -337,7 +337,7 @@ proptest! {
 
 #[test]
 fn integration_is_second_order_and_accurate_at_5_us() {
-    // The same ringing on grids of 5 us, of a half and of a sixteenth of it, which stands for the continuous one.
+    // The same oscillation on grids of 5 us, of half of it, and of a sixteenth, which represents the continuous one.
     let ringing = |step_cycles: u32| {
         let motor = MotorModel { friction_mn_m: 0.0, ..full_steps() };
         let mut plant =

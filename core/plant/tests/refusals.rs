@@ -1,4 +1,4 @@
-//! What makes no plant, with the numbers and the remedy.
+//! Setups that are refused, with the values and a remedy.
 
 use crate::common::one;
 use stepscope_plant::{

@@ -36,19 +36,19 @@ fn braking_motors_raise_the_bus_of_a_source_that_cannot_sink() {
         let setup = buffered(Supply { source_sinks, ..Supply::default() });
         let mut measures = Measures::new(&Plant::new(&setup).expect("it holds"));
         let plant = run(&setup, &[off()], 160_000, &mut measures);
-        // The windings' current has gone back into the buffer: L*I^2/2 of both together.
+        // The current of the windings has returned to the buffer: L*I^2/2 of both together.
         assert_eq!((plant.state(0).expect("a motor").i_a, plant.state(0).expect("a motor").i_b), (0.0, 0.0));
         near(plant.energy(0).expect("a motor").error(), 0.0, 1e-5);
         measures.result(&plant).supply_v.max
     };
-    // 4.8 mJ into 100 uF at 24 V, less what the windings and diodes lose: some 1.8 V.
+    // 4.8 mJ into 100 uF at 24 V, minus the losses of windings and diodes: about 1.8 V.
     near(max(false), 25.7, 0.2);
     near(max(true), 24.1, 0.1);
 }
 
 #[test]
 fn a_supply_that_is_too_weak_collapses_at_a_reported_time() {
-    // At rest 3.6 W are just there. When the currents build up from 0 again they take 4.8 mJ; the buffer holds 2.9 mJ.
+    // In equilibrium 3.6 W are just available. Rising from 0, the currents take 4.8 mJ; the buffer has 2.9 mJ.
     let weak = Supply { source_ohm: 39.0, buffer_uf: Some(10.0), source_sinks: true, ..Supply::default() };
     let setup = Setup { supply: weak, ..one(MotorModel::default()) };
     let on = Record { cycle: Instant(16_000), levels: Levels::RESET };

@@ -1,4 +1,4 @@
-//! The rows of F10 that edges alone define; those of motions and scenarios are in `tests/tests/plant.rs`.
+//! The rows of F10 that need edges only; those with motions and scenarios are in `tests/tests/plant.rs`.
 
 use crate::common::{
     Each, T_STEP, frictionless, full_steps, near, near_part, one, patent_plant, records, run, with_sensor,
@@ -31,7 +31,7 @@ fn a_rotor_settles_where_its_torque_balances_gravity() {
     }
 }
 
-/// A default motor in full steps whose rotor nothing moves, on a grid of 4 cycles.
+/// A default motor in full steps with a locked rotor, on a grid of 4 cycles.
 fn locked() -> Setup {
     let motor = MotorModel { rotor_inertia_g_cm2: 1e9, ..full_steps() };
     Setup { step_cycles: Some(4), ..one(motor) }
@@ -98,7 +98,7 @@ fn without_friction_a_motor_starts_at_eight_natural_frequencies() {
     }
 }
 
-/// 3200 steps at one rate from rest, and 0.2 s.
+/// 3200 steps at a constant rate from standstill, and 0.2 s.
 fn direct_start(motor: MotorModel, rate: f64) -> MotorResult {
     let rises: Vec<u64> = rates::even(16_000_000, rate, 3200).collect();
     let end = rises[3199] + 3_200_000;
@@ -186,7 +186,7 @@ fn sensor_log(setup: &Setup, rises: &[Vec<u64>], cycles: u64) -> SensorLog {
     log
 }
 
-/// One step of one motor that rested for ten T_step, `after` cycles after a grid point.
+/// One step of a motor after ten T_step at standstill, `after` cycles after a grid point.
 fn one_step(setup: &Setup, after: u64) -> StepResponse {
     let rise = 12 * T_STEP / 80 * 80 + after;
     let log = sensor_log(setup, &[vec![rise]], rise + 2 * T_STEP);
@@ -205,7 +205,7 @@ fn one_step_reproduces_the_patents_figure_1() {
     }
 }
 
-/// Four motors, ten steps each, together and one after another.
+/// Four motors, ten steps each, simultaneous and staggered.
 fn deviations(setup: &Setup) -> [Deviation; 2] {
     [0, 8192].map(|apart| {
         let first = 12 * T_STEP;
@@ -243,7 +243,7 @@ fn the_default_motor_has_nearly_the_same_peak_ratio() {
     assert_eq!(step.settled, None);
 }
 
-/// The cycle of the first overload with motors `apart` cycles after each other.
+/// The cycle of the first overload with motors that step `apart` cycles after each other.
 fn overload(apart: u64) -> Option<u64> {
     let setup =
         Setup { motors: vec![full_steps(); 4], protection: Some(Protection::default()), ..Setup::default() };
@@ -285,7 +285,7 @@ fn chopper_at_standstill() {
         let late = &currents[20_000..];
         near_part(late.iter().sum::<f64>() / late.len() as f64, mean, 0.005);
         let (min, most) = late.iter().fold((9.0_f64, 0.0_f64), |(l, m), &i| (l.min(i), m.max(i)));
-        // Each period has one turn from rising to falling.
+        // Each period has one maximum.
         let turns = late.windows(3).filter(|w| w[1] > w[0] && w[1] >= w[2]).count();
         near_part(turns as f64 / (late.len() as f64 / 1e6) / 1e3, khz, 0.01);
         if let Some(swing) = swing {
@@ -335,13 +335,13 @@ fn known_samples_have_their_settling_time() {
     let cut = StepResponse::of(&samples, 0, 95, 45, 0.2).expect("samples");
     assert_eq!((cut.reached, cut.settled), (Some(35), None), "the last one is still off");
     assert_eq!(StepResponse::of(&samples, 0, 95, 4, 0.2), None, "no sample after the rise");
-    // A current that never changes does not settle, in whole codes or not.
+    // A constant current does not settle, in whole codes or not.
     for current in [0.0, 7.0, 0.1, 0.15 + 1e-17] {
         let constant: Vec<Sample> = (0..1003).map(|k| sample(k * 10, current)).collect();
         let found = StepResponse::of(&constant, 0, 5000, 5000, 0.2).expect("samples");
         assert_eq!((found.rest_a, found.reached, found.settled), (current, None, None));
     }
-    // Nor does one that is back only after T_step.
+    // Neither does a current that returns only after T_step.
     let late: Vec<Sample> = (0..20).map(|k| sample(k * 10, if k < 10 { 1.0 } else { 2.0 })).collect();
     let found = StepResponse::of(&late, 0, 95, 50, 0.2).expect("samples");
     assert_eq!((found.reached, found.settled), (None, None));

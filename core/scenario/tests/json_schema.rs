@@ -1,4 +1,4 @@
-//! The JSON Schema accepts what the reader accepts, and refuses what it refuses.
+//! The JSON Schema accepts what the reader accepts, and rejects what the reader rejects.
 
 use jsonschema::Validator;
 use serde_json::Value;

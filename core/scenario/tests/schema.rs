@@ -1,5 +1,5 @@
-//! What follows from the schema is what stands in the project: `docs/scenario.md`, which `STEPSCOPE_BLESS=1 cargo test -p
-//! stepscope-scenario` writes, and the description that the page takes.
+//! Files and texts that are derived from the schema: `docs/scenario.md`, which `STEPSCOPE_BLESS=1 cargo test -p
+//! stepscope-scenario` writes, and the description for the page.
 
 use std::{env, fs, path::Path};
 use stepscope_scenario::{
@@ -18,7 +18,7 @@ fn the_documentation_matches_the_schema() {
     assert!(found == expected, "docs/scenario.md is not what the schema says; STEPSCOPE_BLESS=1 writes it");
 }
 
-/// Every field and kind with the path of names to it.
+/// Each field and kind, with its path of names.
 fn each(ty: &Type, path: &str, seen: &mut Vec<&'static str>, what: &mut impl FnMut(&str, &Group, &Field)) {
     match ty {
         Type::Group(group) if !seen.contains(&group.name) => {
@@ -65,7 +65,7 @@ fn the_pages_explanations_match_the_schema() {
         let [term, explanation] =
             [term, explanation].map(|text| serde_json::to_string(text).expect("a text"));
         let line = format!("  \"{id}\": [{term}, {explanation}],\n");
-        // As the formatter breaks it.
+        // Wrapped like the formatter does.
         let broken = format!("  \"{id}\": [\n    {term},\n    {explanation},\n  ],\n");
         text += if line.trim_end().chars().count() <= 120 { &line } else { &broken };
     }
@@ -83,7 +83,7 @@ fn the_pages_explanations_match_the_schema() {
 
 #[test]
 fn every_field_of_the_form_has_an_explanation() {
-    // Segments are typed as lines, and the version is no one's to give.
+    // Segments are typed as lines, and the version cannot be edited.
     let asked = |group: &Group, field: &Field| {
         let quantity = |group: &Group| group.is_choice && matches!(group.fields[0].ty, Type::Number);
         let one = match field.ty {
@@ -95,14 +95,14 @@ fn every_field_of_the_form_has_an_explanation() {
             && !["StepSegment", "DwellSegment"].contains(&group.name)
             && field.name != "version"
     };
-    // The page does not ask for a plant yet; what it is asked with there is the field's own text.
+    // Fields of a plant have no explanation yet; the form shows their doc text.
     let of_plant = ["PlantSettings", "CurrentSensor", "Encoder", "Protection", "PlantMotor", "Drive"];
     let begins = ["friction", "stiction", "viscous", "detent", "gravity", "sine_", "coupling"];
     let of_plant = |group: &Group, field: &Field| {
         of_plant.contains(&group.name)
             || (group.name == "Motor" && begins.iter().any(|begin| field.name.starts_with(begin)))
     };
-    // Neither for groups, limits and input shapers.
+    // Neither have groups, limits and input shapers.
     let of_groups = [
         "AxisLimits",
         "GroupMove",
@@ -113,7 +113,7 @@ fn every_field_of_the_form_has_an_explanation() {
         "WayPoint",
         "WayPointGroup",
     ];
-    // So are the numbers of a stand-alone controller; its words have cards.
+    // Neither have the numbers of a stand-alone controller; its words have cards.
     let mut of_panel = Vec::new();
     each(&Scenario::TYPE, "", &mut Vec::new(), &mut |path, group, _| {
         if path.starts_with(".source.standalone.") && !group.is_external {
@@ -143,7 +143,7 @@ fn ranges_fit_their_types_and_optional_fields_explain_null() {
         (Limit::Whole(min, max), Type::Whole { max: type_max, .. }) => min > max || max > type_max,
         (Limit::Signed(min, max), Type::Whole { min: type_min, .. }) => min > max || min < type_min,
         (Limit::Number(min, max), Type::Number | Type::Group(_)) => min > max,
-        // The owner judges it as a float.
+        // The crate that owns the type validates it as a float.
         (Limit::Number(min, max), Type::Whole { .. }) => min > max || !group.is_external,
         (Limit::Length(min, max, of), Type::Text | Type::List(_)) => min > max || of.is_empty(),
         _ => true,
@@ -172,9 +172,9 @@ fn the_schema_of_the_page_has_every_default() {
     let schema: serde_json::Value = serde_json::from_str(&describe()).expect("JSON");
     let mut scenario =
         serde_json::from_str::<serde_json::Value>(&Scenario::default().to_json()).expect("JSON");
-    // A plant is written only where there is one.
+    // A plant is written only if there is one.
     scenario["plant"] = serde_json::Value::Null;
-    // So are groups, limits, input shapers and the speeds at the ends of moves.
+    // The same applies to groups, limits, input shapers and the speeds at the ends of moves.
     let motion = &mut scenario["source"]["motion"];
     motion["groups"] = serde_json::json!([]);
     let axis = &mut motion["axes"][0];

@@ -1,4 +1,4 @@
-//! Stand-alone controllers as a scenario has them: every refusal at its path (CONTROLLER.md, "The format").
+//! Stand-alone controllers in scenarios: every error has its path (CONTROLLER.md, "The format").
 
 use stepscope_scenario::{Compact, Scenario};
 

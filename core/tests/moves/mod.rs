@@ -1,4 +1,4 @@
-//! Moves that the property tests of motions and of their stored forms share.
+//! Moves for the property tests of motions and of their tables.
 #![allow(dead_code, reason = "each test file uses some of it")]
 
 use proptest::prelude::*;
@@ -14,7 +14,7 @@ use stepscope_core::motion::{
 
 pub(crate) const CLOCK_HZ: u32 = 16_000_000;
 
-/// Moves that a person could ask for, at most some thousand steps.
+/// Realistic moves of up to some thousand steps.
 pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
     let steps = prop_oneof![-3000_i32..=-1, 1..=3000_i32].prop_map(|n| Distance::Steps(n.into()));
     let method = prop_oneof![Just(TrapezoidMethod::Table), Just(TrapezoidMethod::Exact)];
@@ -22,7 +22,7 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
         (steps.clone(), 0.02..2.0, 0.0..=0.5).prop_map(|(distance, duration_s, ramp)| {
             Move::Cosine(Cosine { distance, duration_s, ramp_s: duration_s * ramp, ..Cosine::default() })
         }),
-        // Ten slices at least, of three steps each.
+        // At least ten slices of three steps each.
         (100..=3000_i32, any::<bool>(), 0.0..=0.5, 0.001..=0.003).prop_map(
             |(steps, right, ramp, slice_s)| {
                 let duration_s = f64::from(steps) * 0.0003;
@@ -98,13 +98,13 @@ pub(crate) fn ramp_shape() -> impl Strategy<Value = RampShape> {
     prop::sample::select(vec![Sigmoid, Bezier, Straight, Exponential])
 }
 
-/// A curve through a few points that a person could have recorded, some of them on whole and half steps.
+/// A curve through a few realistic points, some of them on whole and half steps.
 fn curve() -> impl Strategy<Value = Move> {
     let position = prop_oneof![-500.0..500.0, (-20..20).prop_map(|half| f64::from(half) / 2.0)];
     let interpolation = prop_oneof![Just(Interpolation::Straight), Just(Interpolation::Smooth)];
     let rest = prop::collection::vec((0.05..0.5, position), 0..8);
     (rest, interpolation, prop_oneof![Just(0.0), -1e3..1e3]).prop_map(|(rest, interpolation, start_s)| {
-        // The first way is more than a step, so that the move has one.
+        // The first distance is more than one step, so that the move has a step.
         let mut points = vec![(start_s, 3.25), (start_s + 0.1, 5.0)];
         for (later_s, position) in rest {
             let last_s = points[points.len() - 1].0;

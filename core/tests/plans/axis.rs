@@ -13,9 +13,9 @@ fn an_axis_finds_the_jumps_between_its_moves() {
     let pi = std::f64::consts::PI;
     let smooth = peaks(cosine);
     assert!((smooth.jerk / (32_000.0 * pi * pi / 0.08) - 1.0).abs() < 1e-15, "{smooth:?}");
-    // The acceleration begins and ends at 0, but for the rounding of pi.
+    // The acceleration starts and ends at 0, except for the rounding of pi.
     assert_eq!((smooth.jump, smooth.acceleration_jump), (0.0, 0.0));
-    // A trapezoid's acceleration of 8000 jumps by as much, a triangle's at its tip by twice that.
+    // The acceleration of 8000 jumps by 8000 in a trapezoid, and by twice that at the tip of a triangle.
     let trapezoid = |steps: u32, way: &str| {
         format!(
             r#"{{"trapezoid":{{"distance":{{"steps":{way}{steps}}},"start_speed":{{"steps_s":1000}},"top_speed":{{"steps_s":5000}},"acceleration":{{"steps_s2":8000}},"method":"exact"}}}}"#
@@ -24,7 +24,7 @@ fn an_axis_finds_the_jumps_between_its_moves() {
     let jumps = |peaks: Peaks| (peaks.jump, peaks.acceleration_jump, peaks.jerk);
     assert_eq!(jumps(peaks(&trapezoid(10_000, ""))), (1000.0, 8000.0, 0.0));
     assert_eq!(jumps(peaks(&trapezoid(800, ""))), (1000.0, 16_000.0, 0.0));
-    // Slowing down to the right and speeding up to the left are one acceleration.
+    // Decelerating to the right and accelerating to the left are the same acceleration.
     let there_and_back = format!("{},{}", trapezoid(10_000, ""), trapezoid(10_000, "-"));
     assert_eq!(jumps(peaks(&there_and_back)), (2000.0, 8000.0, 0.0));
     let constant = r#"{"constant":{"distance":{"steps":100},"speed":{"steps_s":1000}}}"#;

@@ -1,4 +1,4 @@
-//! Where the pieces of a plan meet.
+//! The breakpoints of a plan.
 
 use super::{axis, plan_axis};
 use stepscope_core::{
@@ -31,7 +31,7 @@ const MOVES: &[&str] = &[
     r#"{"dwell":{"duration_s":0.1}},{"sine_segments":{"amplitude":{"steps":500},"period_s":0.2,"periods":3}},{"dwell":{"duration_s":0.05}}"#,
 ];
 
-/// These moves, and all axes of the presets, among which is every kind of move.
+/// These moves and all axes of the presets, which include every kind of move.
 fn plans() -> impl Iterator<Item = (&'static str, AxisPlan)> {
     let presets = PRESETS.iter().flat_map(|preset| {
         let axes = match preset.scenario().source {
@@ -52,7 +52,7 @@ fn every_curve_is_smooth_between_two_breakpoints() {
             let length = interval.to_s - interval.from_s;
             covered += length * interval.times;
             let at = |part: f64| interval.from_s + length * part;
-            // Its speed is straight, or bends as little as a 64th of a cosine's ramp does.
+            // The speed is straight, or bends at most as much as a 64th of a cosine ramp.
             let [a, b, c] = [0.001, 0.5, 0.999].map(|part| plan.speed(at(part)));
             let bend = (b - (a + c) / 2.0).abs();
             assert!(bend <= 1e-3 * plan.peaks().speed, "{moves}: {interval:?} bends by {bend}");

@@ -1,4 +1,4 @@
-//! Plans of axes as scenarios write them: every problem with its path, and what holds for every kind of move.
+//! Plans of axes in scenarios: each problem with its path, and properties of every kind of move.
 
 mod axis;
 mod breakpoints;
@@ -21,7 +21,7 @@ fn axis(json: &str) -> Axis {
     }
 }
 
-/// Holds the problems of an axis against those expected.
+/// Compares the problems of an axis with the expected ones.
 #[track_caller]
 fn check(json: &str, expected: &[&str]) {
     let problems = plan_axis(&axis(json), "axis").err().into_iter().flatten().collect::<Vec<_>>();

@@ -16,7 +16,7 @@ fn invalid_numbers_of_a_motor_are_reported_with_their_paths() {
             "axis.motor.working_rate_hz: 0 steps/s is out of range; use 1 to 10000000 steps/s",
         ],
     );
-    // Without a rated current the peak's range is not known.
+    // Without a rated current the range of the peak current is unknown.
     check(
         r#"{"motor":{"rated_current_a":0,"peak_current_a":9}}"#,
         &["axis.motor.rated_current_a: 0 A is out of range; use 0.001 to 100 A"],

@@ -1,4 +1,4 @@
-//! Problems of every kind of move, and the bounds that axes share.
+//! Problems of every kind of move, and limits that axes share.
 
 use super::{axis, check};
 use stepscope_core::motion::{AxisList, AxisPlan, Problems, Profile, plan_axis, plan_lists};
@@ -98,7 +98,7 @@ fn axes_share_the_bounds_on_tables_and_segments() {
         problems(&sines, 3)[0],
         "source.motion.axes[2].moves[0].sine_segments: 66048 sine segments exceed the maximum of 65536; use a larger maximum deviation or fewer sines"
     );
-    // The preset of the document has six: a sweep of ten on each of 16 axes is no trouble.
+    // The paper's preset has six segments: a sweep of ten on each of 16 axes is within the limits.
     let sweep = sines.replace(r#""max_deviation":0"#, r#""max_deviation":0.0054"#);
     assert_eq!(problems(&sweep, 16), [""; 0]);
 }

@@ -1,4 +1,4 @@
-//! Moves of so many steps in so much time (DESIGN B4).
+//! Moves of a given number of steps in a given time (DESIGN B4).
 
 use super::{axis, check, plan_axis};
 
@@ -47,7 +47,7 @@ fn slices_may_reach_but_not_exceed_the_maximum_speed() {
         check(&cosine("exact"), &[]);
         check(&cosine("sliced"), &[]);
     }
-    // 105.5 steps a slice are 105, so in the plateau each has to have 106.
+    // 105.5 steps per slice become 105, so each slice of the plateau must have 106.
     check(
         r#"{"moves":[{"cosine":{"distance":{"steps":10550},"duration_s":0.001055,"ramp_s":0,"method":"sliced","slice_s":1.055e-5}}]}"#,
         &[

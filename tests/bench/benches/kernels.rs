@@ -1,5 +1,5 @@
-//! Criterion's figure of each kernel by itself; or, called as `kernels --rounds N [KERNEL]...`, N
-//! rounds of all kernels or the named ones, reported as JSON on standard output. Naming one is for
+//! Criterion's figure of each kernel; or, called as `kernels --rounds N [KERNEL]...`, N rounds of all
+//! kernels or of the named ones, reported as JSON on standard output. Naming one is useful for
 //! profilers.
 #![allow(clippy::expect_used, reason = "a benchmark fails by panicking")]
 
@@ -29,7 +29,7 @@ fn report(kernels: &mut Kernels, count: u32, names: &[String]) {
 
 fn measure(kernels: &mut Kernels, criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("kernels");
-    // A call takes milliseconds: samples of more and more calls would take minutes.
+    // A call takes milliseconds: criterion's growing samples would take minutes.
     group.sampling_mode(SamplingMode::Flat);
     for kernel in Kernel::ALL {
         group.throughput(Throughput::Elements(kernels.work(kernel).units));

@@ -1,53 +1,53 @@
-//! What is measured: each kernel, what it does, what it is compared with, and the aim.
+//! The kernels: what each does, its reference kernel and its target ratio.
 
 use crate::planners::Planner;
 
-/// Something that is measured.
+/// A kernel of the benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// The records of the steady motion, copied: what a stored trace is compared with.
+    /// Copies the records of the constant motion: the reference of a stored trace.
     Copy,
-    /// As many records, made of a counter: memory is written and not read.
+    /// Writes the same number of records, filled from a counter: memory is written and not read.
     Write,
-    /// The steady motion into a stored trace.
+    /// The constant motion into a stored trace.
     Stored,
-    /// The steady motion into a digest.
+    /// The constant motion into a digest.
     Digest,
     /// The varied motion into a stored trace.
     VariedStored,
     /// The varied motion into a digest.
     VariedDigest,
-    /// The steady motion at a tenth of the rate, with one DIR line for all channels.
+    /// The constant motion at a tenth of the rate, with one DIR line for all channels.
     CommonDir,
-    /// The same with pulses one after another.
+    /// The same with staggered pulses.
     Staggered,
-    /// The steady motion over the framed protocol, with a host that waits for replies.
+    /// The constant motion over the framed protocol, with a host that waits for replies.
     Framed,
-    /// The steady motion by lists of segments.
+    /// The constant motion by lists of segments.
     Segments,
-    /// Lists of segments whose edges are each alone in a record.
+    /// Lists of segments with one edge per record.
     SegmentsApart,
-    /// A controller of 16 motors, alone on a line with the packets for 512, into a digest.
+    /// One controller of 16 motors, on a line with the packets for 512, into a digest.
     Motors16,
-    /// 32 such controllers on one line, each into a digest of its own.
+    /// 32 such controllers on one line, each with its own digest.
     Motors512,
-    /// The motion that is the same at every clock into a stored trace, at 16 MHz.
+    /// A motion that is the same at every clock into a stored trace, at 16 MHz.
     Clock16,
     /// The same at 1 MHz.
     Clock1,
     /// The same at 200 MHz.
     Clock200,
-    /// The short motion clock by clock.
+    /// A short motion clock by clock.
     ClockByClock,
-    /// The short motion at the fast speed.
+    /// A short motion from event to event.
     Fast,
-    /// One square root a step, summed: what the planner is compared with.
+    /// The sum of one square root per step: the reference of the planner.
     Roots,
-    /// The cycles of a trapezoid's steps, summed.
+    /// The sum of the cycles of a trapezoid's steps.
     StepTimes,
-    /// As many steps up to 200 000 steps/s and down again, planned and kept as the exact list.
+    /// The same number of steps up to 200 000 steps/s and down again, planned and stored as the exact list.
     Exact,
-    /// The same steps, planned before, compressed to 25 us.
+    /// The same steps, already planned, compressed to 25 us.
     Compressed,
     /// The same, in Klipper's window and widths.
     CompressedKlipper,
@@ -55,45 +55,45 @@ pub enum Kernel {
     PlannedCompressed,
     /// Planned and compressed into entries of whole cycles.
     PlannedTicks,
-    /// Planned and compressed into short entries with eight bits of a fraction.
+    /// Planned and compressed into short entries with fractions of eight bits.
     PlannedQ8,
-    /// A trapezoid's own table as its document keeps it, and how far its steps are from it.
+    /// The paper's table of a trapezoid, and its timing error.
     Document,
-    /// The cycles in which the steps of a planner's move fall due, summed.
+    /// The sum of the due cycles of a planner's move.
     Plan(Planner),
-    /// The vertices with least distortion, so many segments a quarter.
+    /// The vertices with the minimum distortion for a number of segments per quarter.
     Optimum(u8),
-    /// The sweep of the sine document's figure 4.
+    /// The sweep of figure 4 of the sine paper.
     Sweep,
-    /// Sine and cosine by the plant's polynomials, one a motor-step: what the plant is compared with.
+    /// Sine and cosine by the plant's polynomials, once per motor and step: the reference of the plant.
     SineCosine,
-    /// A tenth of a second of sixteen motors at steps of 5 us, edges in and nobody looking.
+    /// A tenth of a second of sixteen motors at steps of 5 us, driven by edges, without measures.
     PlantAveraged,
-    /// As many motor-steps where the drivers chop, at steps of 1 us.
+    /// The same number of motor steps with choppers, at steps of 1 us.
     PlantChopper,
-    /// The first with the run before it and all measures behind it.
+    /// The first of these with its run and all measures.
     PlantRun,
 }
 
-/// What there is to say of a kernel.
+/// Description of a kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct Facts {
-    /// Its name, fit for a file.
+    /// Its name, valid as a file name.
     pub name: &'static str,
-    /// What it does, for who reads its speed.
+    /// What it does, for readers of the results.
     pub what: &'static str,
-    /// What it makes.
+    /// Its unit of work.
     pub unit: &'static str,
-    /// What its speed is compared with.
+    /// Its reference kernel.
     pub yardstick: Option<Kernel>,
-    /// Which ratio of the two speeds is aimed at, at least.
+    /// Minimum target of the ratio of the two speeds.
     pub aim: Option<f64>,
-    /// Which part of the native speed is aimed at in the browser, at least.
+    /// Minimum target of the browser's speed, as a fraction of the native speed.
     pub browser_aim: Option<f64>,
 }
 
 impl Kernel {
-    /// All kernels, each yardstick right before what is compared with it.
+    /// All kernels; each reference precedes the kernels that are compared with it.
     pub const ALL: [Self; 50] = [
         Self::Write,
         Self::Copy,
@@ -147,7 +147,7 @@ impl Kernel {
         Self::PlantRun,
     ];
 
-    /// What there is to say of it.
+    /// Its description.
     #[must_use]
     pub const fn facts(self) -> Facts {
         let plain = Facts {
@@ -162,7 +162,7 @@ impl Kernel {
         let clock = Facts { yardstick: Some(Self::Clock16), aim: Some(0.9), ..plain };
         let steps = Facts { unit: "steps", ..plain };
         let of_roots = Facts { yardstick: Some(Self::Roots), ..steps };
-        // Klipper's step compression has 0.075 of such a loop.
+        // Klipper's step compression reaches 0.075 of such a loop.
         let beside_klipper = Facts { aim: Some(0.075), ..of_roots };
         let motor_steps = Facts { unit: "motor_steps", ..plain };
         let plant = Facts { yardstick: Some(Self::SineCosine), aim: Some(0.125), ..motor_steps };

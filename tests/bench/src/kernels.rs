@@ -1,4 +1,4 @@
-//! The kernels at work: their experiments, and the memory that they write.
+//! Runs the kernels: their experiments, and their memory.
 
 use core::{hint::black_box, num::NonZeroU32};
 
@@ -26,33 +26,33 @@ use stepscope_core::{
 
 use crate::{kernel::Kernel, motions, planners::Planner};
 
-/// Steps of the planner's move: a triangle, so that every step has its square root.
+/// Steps of the planner's move: a triangle, so that every step needs its square root.
 const STEPS: u32 = 1_000_000;
 const START_SPEED: f64 = 250.0;
 const TOP_SPEED: f64 = 1e7;
 const ACCELERATION: f64 = 9000.0;
 const CLOCK_HZ: u32 = 16_000_000;
-/// Largest error of a compressed table: 25 us.
+/// Maximum error of a compressed table: 25 us.
 const TOLERANCE: Tolerance = Tolerance::of(Cycles(400));
-/// Klipper's: never late, nor early by more than half an interval.
+/// Klipper's limits: never late, and early by at most half an interval.
 const KLIPPERS: Tolerance = Tolerance { interval_part: NonZeroU32::new(2), side: Side::Early, ..TOLERANCE };
 const PULSE: PulseTimes = PulseTimes { width: Cycles(16), setup: Cycles(0), hold: Cycles(0) };
-/// How often the short motion is run at the fast speed, so that it takes a time that can be told.
+/// Number of short runs from event to event, so that their time can be measured.
 const SHORT_RUNS: u64 = 200;
-/// Harmonics up to which a sine is judged.
+/// Highest harmonic of the distortion.
 const ORDER: u16 = 399;
-/// The range of d1 that the page offers, and the rows of the sine document's figure 4.
+/// The page's range of d1, and the rows of figure 4 of the sine paper.
 const SWEEP: (f64, f64) = (0.002, 0.06);
 const SWEEP_ROWS: u32 = 500;
 
-/// Motors of the plant, and motor-steps of a call: a second at 5 us has ten times as many.
+/// Motors of the plant, and motor steps per call: a second at 5 us has ten times as many.
 const MOTORS: u64 = 16;
 const MOTOR_STEPS: u64 = 320_000;
-/// Cycles from STEP to STEP of each motor, all at once, and of a pulse.
+/// Cycles between the simultaneous steps of the motors, and of a pulse.
 const STEP_CYCLES: u64 = 4000;
 const PULSE_CYCLES: u64 = 160;
 
-/// The kernels' experiments and the memory that they write.
+/// The experiments of the kernels, and the memory that they write.
 pub struct Kernels {
     steady: Experiment,
     varied: Experiment,
@@ -69,31 +69,31 @@ pub struct Kernels {
     short: Experiment,
     plant_run: Experiment,
     ramp: Trapezoid,
-    /// The move whose tables are made, and its steps.
+    /// The move whose tables are computed, and its steps.
     move_of_tables: AxisPlan,
     due: Vec<ScheduledStep>,
     /// A move of each planner, in their order.
     plans: Vec<AxisPlan>,
-    /// The steady motion's trace.
+    /// The trace of the constant motion.
     source: Vec<Record>,
-    /// What is written: room for the longest trace, every page of it touched before.
+    /// Output: space for the longest trace, with all pages already mapped.
     target: Vec<Record>,
 }
 
-/// What a kernel makes in one call.
+/// The work of one call of a kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct Work {
     /// Records or steps.
     pub units: u64,
-    /// Single-signal edges among them: a record may hold several.
+    /// Single-signal edges among them: a record may contain several.
     pub edges: Option<u64>,
 }
 
 impl Kernels {
-    /// Prepares all of them.
+    /// Prepares all kernels.
     ///
     /// # Errors
-    /// None, as long as the scenario's rules stay as they are.
+    /// None while the rules of scenarios do not change.
     pub fn new() -> Result<Self, Problems> {
         let (steady, varied) = (motions::steady()?, motions::varied()?);
         let mut source = Vec::new();
@@ -125,8 +125,8 @@ impl Kernels {
         })
     }
 
-    /// Calls a kernel once; the result is only there to be used. Each has a function of its own, so that what a compiler
-    /// makes of it is its own, too.
+    /// Calls a kernel once; the result only prevents the call from being optimized away. Each kernel has its own function, so
+    /// that the compiler optimizes it separately.
     pub fn call(&mut self, kernel: Kernel) -> u64 {
         match kernel {
             Kernel::Copy => self.copy(),
@@ -152,7 +152,7 @@ impl Kernels {
             Kernel::Optimum(segments) => optimum(black_box(segments.into()), Freedom::Free, ORDER)
                 .map_or(0, |found| found.distortion.position.to_bits()),
             Kernel::Sweep => sweep(black_box(SWEEP.0), SWEEP.1, SWEEP_ROWS, ORDER)
-                // All of a row, be it used or not: an optimiser that knows more would leave out what the other makes.
+                // Writes whole rows, whether used or not: otherwise an optimizer could omit a part of one kernel's work.
                 .map(black_box)
                 .fold(0, |sum, row| sum ^ row.distortion.position.to_bits()),
             Kernel::SineCosine => sine_cosine(black_box(0.37)).to_bits(),
@@ -180,8 +180,8 @@ impl Kernels {
             Kernel::Clock16 => store(&self.clock_16, &mut self.target),
             Kernel::Clock200 => store(&self.clock_200, &mut self.target),
             Kernel::Fast => (0..SHORT_RUNS).map(|_| store(&self.short, &mut self.target)).sum(),
-            // Called by its address: wasm-opt copies what one place alone calls into it, `inline(never)` or not, and a browser
-            // then compiles it by what all other kernels did.
+            // Called by its address: wasm-opt inlines functions with one caller, even with `inline(never)`, and a browser
+            // would then compile it together with all other kernels.
             Kernel::ClockByClock => {
                 let call: fn(&Experiment, &mut Vec<Record>) -> u64 = black_box(clock_by_clock);
                 call(&self.short, &mut self.target)
@@ -189,7 +189,7 @@ impl Kernels {
         }
     }
 
-    /// What one call of a kernel makes.
+    /// The work of one call of a kernel.
     pub fn work(&mut self, kernel: Kernel) -> Work {
         let result = self.call(kernel);
         let stored = || Some(edges(&self.target));
@@ -262,7 +262,7 @@ fn compress(due: &[ScheduledStep], tolerance: Tolerance, format: EntryFormat) ->
     segments_of(compressed_quickly(due.iter().copied(), tolerance, format, PULSE))
 }
 
-/// One angle after another: nothing waits for the one before.
+/// Independent angles: no one depends on the previous result.
 #[inline(never)]
 fn sine_cosine(quarters: f64) -> f64 {
     (0..MOTOR_STEPS)
@@ -273,7 +273,7 @@ fn sine_cosine(quarters: f64) -> f64 {
         .sum()
 }
 
-/// Motors that step all at once, 4000 times a second.
+/// Motors that step simultaneously, 4000 times per second.
 #[inline(never)]
 fn plant(regulator: CurrentControl) -> u64 {
     let Ok(mut plant) = Plant::new(black_box(&motions::plant(regulator))) else { return 0 };
@@ -290,7 +290,7 @@ fn plant(regulator: CurrentControl) -> u64 {
     plant.digest()
 }
 
-/// Entries of a table; none where there is no table, which the tests would see.
+/// Entries of a table; none if there is no table, which the tests would detect.
 fn entries(table: Result<Stored, Cause>) -> u64 {
     table.map_or(0, |table| table.entries.len() as u64)
 }
@@ -313,7 +313,7 @@ fn clock_by_clock(experiment: &Experiment, target: &mut Vec<Record>) -> u64 {
     target.len() as u64
 }
 
-/// The records of every controller of a line, each into a digest of its own.
+/// The records of every controller of a line, each into its own digest.
 #[inline(never)]
 fn digest_each(experiment: &Experiment) -> u64 {
     let mut digests = vec![Digest::default(); experiment.controllers()];
@@ -328,13 +328,13 @@ fn digest(experiment: &Experiment) -> u64 {
     digest.value()
 }
 
-/// The least that a planner of this ramp could do.
+/// The minimum work of a planner of this ramp.
 #[inline(never)]
 fn roots(v0: f64, a: f64) -> f64 {
     (0..STEPS).map(|k| square_root(v0 * v0 + 2.0 * a * f64::from(k))).sum()
 }
 
-/// One at a time, by the instruction that both kinds of machine have: `libm` has it for x86, and not for wasm.
+/// One at a time, by the instruction that both targets have: `libm` has it for x86, but not for wasm.
 fn square_root(x: f64) -> f64 {
     #[cfg(target_arch = "wasm32")]
     let root = x.sqrt();
@@ -368,7 +368,7 @@ mod tests {
     fn sixteen_channels_make_2_records_and_32_edges_per_slot() {
         let mut kernels = Kernels::new().unwrap();
         let Work { units, edges } = kernels.work(Kernel::Digest);
-        // Beside the steps: four edges of the line a byte (0xe4), the first record, and DIR.
+        // In addition to the steps: four edges of the line per byte (0xe4), the first record, and DIR.
         let line = 10_000 * 16 * 4;
         assert_eq!((units, edges), (2_000_000 + line + 2, Some(32_000_000 + line + 16)));
         assert_eq!(kernels.work(Kernel::Copy).units, units);
@@ -411,8 +411,8 @@ mod tests {
             tables.map(|kernel| kernels.call(kernel));
         assert!(q8 > 0 && q8 < exact && document > 0, "{q8} {document}");
         assert_eq!(before, planned);
-        // Klipper's step compression makes about 1289 entries of this move; the quick search in its window, which is half as
-        // wide as ours, a few more.
+        // Klipper's step compression makes about 1289 entries of this move; the quick search with its window, which is half as
+        // wide as ours, makes a few more.
         assert!(klipper > ticks && klipper < 1320, "{klipper}");
         assert!(planned > 0 && planned < ticks && ticks < 1289 && ticks < exact, "{exact} {planned} {ticks}");
     }

@@ -1,18 +1,18 @@
-//! The kernels that `cargo xtask bench` measures: the same functions as native code and in a
+//! The kernels of `cargo xtask bench`: the same functions as native code and in a
 //! browser.
 //!
-//! | file | what it holds |
+//! | file | contents |
 //! | --- | --- |
-//! | `motions` | the experiments that are run |
+//! | `motions` | the experiments |
 //! | `planners` | a move of each planner |
-//! | `kernel` | each kernel: what it does, what it is compared with, and the aim |
-//! | `kernels` | the kernels at work |
-//! | `rounds` | all kernels in turn, over and over, each timed; the report of it |
+//! | `kernel` | each kernel: what it does, its reference kernel, and its target ratio |
+//! | `kernels` | runs the kernels |
+//! | `rounds` | times all kernels in rounds, and reports the times |
 //! | `page` (wasm) | such rounds for the worker in `page/` |
 //! | `benches/kernels` | as native code: such rounds, or criterion's figure of each kernel |
 //!
-//! A busy machine changes its speed from second to second, so a ratio is always one of two times
-//! that were taken right after one another, in the same round.
+//! The speed of a busy machine changes every second, so each ratio compares two times that were measured
+//! one after the other in the same round.
 
 pub mod kernel;
 pub mod kernels;

@@ -1,4 +1,4 @@
-//! The experiments that the kernels run.
+//! The experiments of the kernels.
 
 use stepscope_core::{
     motion::{
@@ -17,7 +17,7 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// Sixteen channels, 100 slots of 10 us in a tick of 1 ms: at most 100 kHz a channel.
+/// Sixteen channels, 100 slots of 10 us in a tick of 1 ms: at most 100 kHz per channel.
 fn sixteen(axes: Vec<Axis>) -> Scenario {
     Scenario {
         bus: Bus {
@@ -34,8 +34,8 @@ fn sixteen(axes: Vec<Axis>) -> Scenario {
     }
 }
 
-/// Four channels, 100 slots of 100 us in a tick of 10 ms, every time the same whole number of
-/// microseconds whatever the clock. The line is slow enough for a clock of 1 MHz.
+/// Four channels, 100 slots of 100 us in a tick of 10 ms; all times are whole microseconds at every
+/// clock. The line is slow enough for a clock of 1 MHz.
 fn four(clock_hz: u32, axes: Vec<Axis>) -> Scenario {
     let micros = clock_hz / 1_000_000;
     Scenario {
@@ -60,8 +60,8 @@ fn constant(steps: f64, steps_s: f64) -> Axis {
     Axis { moves: vec![Move::Constant(Constant { distance, speed })], ..Axis::default() }
 }
 
-/// A move up to 200 000 steps/s with 200 000 steps/s^2, exact to the cycle: whoever compresses step times is measured with
-/// it.
+/// A move up to 200 000 steps/s with 200 000 steps/s^2, exact to the cycle, for measuring the compression of
+/// step times.
 pub(crate) fn table_axis(steps: u32) -> Axis {
     let speed = Speed::StepsPerSecond;
     let trapezoid = Trapezoid {
@@ -75,7 +75,7 @@ pub(crate) fn table_axis(steps: u32) -> Axis {
     Axis { moves: vec![Move::Trapezoid(trapezoid)], ..Axis::default() }
 }
 
-/// An S-curve without a plateau whose peak is `top_speed` steps/s.
+/// An S-curve without a plateau and with a peak of `top_speed` steps/s.
 fn s_curve(duration_s: f64, top_speed: f64) -> Axis {
     let ramp_s = duration_s / 2.0;
     let distance = Distance::Steps((top_speed * ramp_s).round());
@@ -85,25 +85,25 @@ fn s_curve(duration_s: f64, top_speed: f64) -> Axis {
     }
 }
 
-/// Sixteen channels at 100 kHz each for 10 s: every tick orders the same.
+/// Sixteen channels at 100 kHz each for 10 s: all ticks are the same.
 ///
 /// # Errors
-/// None, as long as the scenario's rules stay as they are.
+/// None while the rules of scenarios do not change.
 pub fn steady() -> Result<Experiment, Problems> {
     Experiment::new(&sixteen(vec![constant(1e6, 1e5); 16]))
 }
 
-/// Sixteen S-curves of different lengths, 7 to 10 s: hardly a tick orders what the one before did.
+/// Sixteen S-curves of different lengths, 7 to 10 s: hardly any tick equals the previous one.
 ///
 /// # Errors
-/// None, as long as the scenario's rules stay as they are.
+/// None while the rules of scenarios do not change.
 pub fn varied() -> Result<Experiment, Problems> {
     let axes = (0..16).map(|axis| s_curve(10.0 - 0.2 * f64::from(axis), 95_000.0 - 500.0 * f64::from(axis)));
     Experiment::new(&sixteen(axes.collect()))
 }
 
-/// Sixteen channels at 10 kHz each for 10 s in slots of 100 us: room for pulses that come after each
-/// other.
+/// Sixteen channels at 10 kHz each for 10 s in slots of 100 us, which have space for staggered
+/// pulses.
 fn with_room(bus: Bus) -> Result<Experiment, Problems> {
     let mut scenario = sixteen(vec![constant(1e5, 1e4); 16]);
     let (channels, slots) = (scenario.bus.channels, scenario.bus.slots);
@@ -121,25 +121,25 @@ fn with_room(bus: Bus) -> Result<Experiment, Problems> {
 /// With one DIR line for all channels.
 ///
 /// # Errors
-/// None, as long as the scenario's rules stay as they are.
+/// None while the rules of scenarios do not change.
 pub fn common_dir() -> Result<Experiment, Problems> {
     with_room(Bus { dir_line: DirLine::Common, ..Bus::default() })
 }
 
-/// With pulses one after another.
+/// With staggered pulses.
 ///
 /// # Errors
-/// None, as long as the scenario's rules stay as they are.
+/// None while the rules of scenarios do not change.
 pub fn staggered() -> Result<Experiment, Problems> {
     with_room(Bus { pulse_phasing: PulsePhasing::Staggered, settle_cycles: 100, ..Bus::default() })
 }
 
-/// The steady motion over the framed protocol; the line is fast enough for frames and replies.
+/// The constant motion over the framed protocol; the line is fast enough for frames and replies.
 ///
 /// # Errors
-/// None, as long as the scenario's rules stay as they are.
+/// None while the rules of scenarios do not change.
 pub fn framed() -> Result<Experiment, Problems> {
-    // Ticks of 1.5 ms: a tick's bytes, with their share of frames and replies, take more than 1 ms.
+    // Ticks of 1.5 ms: the bytes of a tick, with their part of frames and replies, take more than 1 ms.
     let mut scenario = sixteen(vec![constant(1e6, 1e5 * 160.0 / 240.0); 16]);
     scenario.line = Line { baud: 1_400_000, protocol: Protocol::Framed, ..Line::default() };
     scenario.line.host.ticks_per_frame = 32;
@@ -147,10 +147,10 @@ pub fn framed() -> Result<Experiment, Problems> {
     Experiment::new(&scenario)
 }
 
-/// The steady motion by lists of segments.
+/// The constant motion by lists of segments.
 ///
 /// # Errors
-/// None, as long as the scenario's rules stay as they are.
+/// None while the rules of scenarios do not change.
 pub fn segments() -> Result<Experiment, Problems> {
     let steps = StepSegment { count: 1_000_000, interval_q16: 160 << 16, ..StepSegment::default() };
     let list = ChannelSegments { segments: vec![Segment::Steps(steps)], ..ChannelSegments::default() };
@@ -159,10 +159,10 @@ pub fn segments() -> Result<Experiment, Problems> {
     Experiment::new(&scenario)
 }
 
-/// Sixteen motors behind such lists, 4000 steps/s each for a tenth of a second: a run with all that a plant measures.
+/// Sixteen motors behind such lists, 4000 steps/s each for a tenth of a second: a run with all measures of a plant.
 ///
 /// # Errors
-/// None, as long as the scenario's rules stay as they are.
+/// None while the rules of scenarios do not change.
 pub fn plant_run() -> Result<Experiment, Problems> {
     let steps = StepSegment { count: 400, interval_q16: 4000 << 16, ..StepSegment::default() };
     let list = ChannelSegments { segments: vec![Segment::Steps(steps)], ..ChannelSegments::default() };
@@ -172,7 +172,7 @@ pub fn plant_run() -> Result<Experiment, Problems> {
     Experiment::new(&scenario)
 }
 
-/// The plant of sixteen motors, which chop or do not.
+/// The plant of sixteen motors, with or without choppers.
 #[must_use]
 pub fn plant(regulator: CurrentControl) -> Setup {
     let motor = parameters::MotorModel {
@@ -186,10 +186,10 @@ pub fn plant(regulator: CurrentControl) -> Setup {
     Setup { motors: vec![motor; 16], ..Setup::default() }
 }
 
-/// As many records by lists of segments that start one after another: every edge is alone in its record.
+/// The same number of records by lists of segments with different starts: each record has one edge.
 ///
 /// # Errors
-/// None, as long as the scenario's rules stay as they are.
+/// None while the rules of scenarios do not change.
 pub fn segments_apart() -> Result<Experiment, Problems> {
     let steps = StepSegment { count: 62_500, interval_q16: 160 << 16, ..StepSegment::default() };
     let list = |channel: u64| ChannelSegments {
@@ -197,7 +197,7 @@ pub fn segments_apart() -> Result<Experiment, Problems> {
         segments: vec![Segment::Steps(steps.clone())],
     };
     let mut scenario = sixteen(Vec::new());
-    // Not a whole number of starts.
+    // No multiple of the starts.
     scenario.bus.pulse_width_cycles = 45;
     scenario.source = Source::Segments(SegmentLists { channels: (0..16).map(list).collect() });
     Experiment::new(&scenario)

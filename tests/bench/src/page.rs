@@ -1,4 +1,4 @@
-//! What the worker of the benchmark's page calls.
+//! Functions for the worker of the benchmark's page.
 
 use wasm_bindgen::prelude::*;
 
@@ -17,19 +17,19 @@ pub struct Bench(Kernels);
 
 #[wasm_bindgen]
 impl Bench {
-    /// Prepares them.
+    /// Prepares the kernels.
     ///
     /// # Errors
-    /// The problems of the motions, of which there are none.
+    /// The problems of the motions; there are none.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Result<Bench, JsError> {
         Kernels::new().map(Self).map_err(|problems| JsError::new(&format!("{problems:?}")))
     }
 
-    /// So many rounds of all of them, reported as JSON.
+    /// Runs a number of rounds of all kernels, and returns the report as JSON.
     ///
     /// # Errors
-    /// None that is known.
+    /// None known.
     pub fn rounds(&mut self, count: u32) -> Result<String, JsError> {
         let reports = rounds::measure(&mut self.0, |_| true, count, || now() / 1e3);
         Ok(serde_json::to_string(&reports)?)

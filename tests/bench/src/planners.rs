@@ -1,22 +1,22 @@
-//! Every planner with a move of about a million steps: how fast its steps fall due.
+//! A move of about a million steps for every planner, to measure how fast its step times are computed.
 
 use stepscope_core::{
     motion::{AxisPlan, Cause, plan_axis},
     scenario::{Problem, Problems, Scenario, Source, of_motion},
 };
 
-/// A planner, of all that a move can be.
+/// A planner for one kind of move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Planner {
-    /// B2 by the document's table.
+    /// B2 by the paper's table.
     TrapezoidTable,
-    /// B2 where the ideal curve crosses its half-integers.
+    /// B2 by the ideal curve.
     TrapezoidExact,
     /// B3.
     Staircase,
     /// B4.
     Cosine,
-    /// B4 by the document's slices.
+    /// B4 by the paper's slices.
     Sliced,
     /// B4 with a sigmoid for a ramp.
     Sigmoid,
@@ -39,7 +39,7 @@ pub enum Planner {
 }
 
 impl Planner {
-    /// All of them.
+    /// All planners.
     pub const ALL: [Self; 14] = [
         Self::TrapezoidTable,
         Self::TrapezoidExact,
@@ -57,7 +57,7 @@ impl Planner {
         Self::Constant,
     ];
 
-    /// Its kernel's name, and its move.
+    /// The name of its kernel, and its move.
     const fn row(self) -> (&'static str, &'static str) {
         match self {
             Self::TrapezoidTable => (
@@ -115,13 +115,13 @@ impl Planner {
         }
     }
 
-    /// Its kernel's name.
+    /// The name of its kernel.
     #[must_use]
     pub const fn name(self) -> &'static str {
         self.row().0
     }
 
-    /// What it plans.
+    /// What its kernel does.
     #[must_use]
     pub const fn what(self) -> &'static str {
         match self {
@@ -142,10 +142,10 @@ impl Planner {
         }
     }
 
-    /// Its move, planned.
+    /// The plan of its move.
     ///
     /// # Errors
-    /// None, as long as the scenario's rules stay as they are.
+    /// None while the rules of scenarios do not change.
     pub fn plan(self) -> Result<AxisPlan, Problems> {
         let (_, given) = self.row();
         let scenario = format!(r#"{{"source":{{"motion":{{"axes":[{{"moves":[{given}]}}]}}}}}}"#);

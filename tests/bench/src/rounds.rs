@@ -1,4 +1,4 @@
-//! All kernels in turn, over and over, each timed; and the report of it, as JSON.
+//! Times all kernels in rounds, and reports the times as JSON.
 
 use core::hint::black_box;
 
@@ -6,30 +6,30 @@ use serde::Serialize;
 
 use crate::{kernel::Kernel, kernels::Kernels};
 
-/// One kernel's times.
+/// The times of one kernel.
 #[derive(Debug, Serialize)]
 pub struct Report {
     /// The kernel.
     pub name: &'static str,
     /// What it does.
     pub what: &'static str,
-    /// What it makes.
+    /// Its unit of work.
     pub unit: &'static str,
-    /// How many a call.
+    /// Units per call.
     pub units: u64,
-    /// Single-signal edges a call.
+    /// Single-signal edges per call.
     pub edges: Option<u64>,
-    /// What its speed is compared with.
+    /// Its reference kernel.
     pub yardstick: Option<&'static str>,
-    /// Which ratio of the two speeds is aimed at, at least.
+    /// Minimum target of the ratio of the two speeds.
     pub aim: Option<f64>,
-    /// Which part of the native speed is aimed at in the browser, at least.
+    /// Minimum target of the browser's speed, as a fraction of the native speed.
     pub browser_aim: Option<f64>,
     /// The time of its call in each round, in s.
     pub seconds: Vec<f64>,
 }
 
-/// Calls the kernels that `chosen` takes once each, `rounds` times; `now` is a clock in s.
+/// Calls the kernels that `chosen` accepts once each, `rounds` times; `now` is a clock in s.
 pub fn measure(
     kernels: &mut Kernels,
     chosen: impl Fn(Kernel) -> bool,
@@ -37,7 +37,7 @@ pub fn measure(
     now: impl Fn() -> f64,
 ) -> Vec<Report> {
     let chosen: Vec<Kernel> = Kernel::ALL.into_iter().filter(|&kernel| chosen(kernel)).collect();
-    // Counting the work is also the call that warms up.
+    // Counting the work also warms up.
     let mut reports: Vec<Report> = chosen.iter().map(|&kernel| report(kernels, kernel)).collect();
     for _ in 0..rounds {
         for (&kernel, report) in chosen.iter().zip(&mut reports) {

@@ -1,5 +1,5 @@
-//! What is forced on the line: glitches on and beside the receiver's samples, and breaks with an end worth
-//! watching.
+//! Levels forced on the line: glitches on and next to the receiver's samples, and breaks with critical
+//! ends.
 
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -7,13 +7,13 @@ use proptest::sample::Index;
 use super::LONGEST_RUN;
 use crate::oracle::{Config, bit_time};
 
-/// Something that befalls the line.
+/// A fault on the line.
 #[derive(Debug, Clone)]
 pub(super) enum LineFault {
     /// One forced level.
     Level { place: Place, length: Length, level: bool },
-    /// Low for long enough that a stop bit is missing, high for a few cycles, low again: whether the
-    /// receiver is armed in time for the second low shows in when it looks for the next stop bit.
+    /// Low until a stop bit is missing, high for a few cycles, low again. The time of the next stop bit shows whether
+    /// the receiver was armed in time for the second low.
     Break { place: Place, low_bits: u64, high_cycles: u64, low_again: Length },
 }
 
@@ -21,9 +21,9 @@ pub(super) enum LineFault {
 pub(super) enum Place {
     /// Cycles after the start of a byte.
     InByte(Index, u64),
-    /// A byte's sample `0..=9` (0 looks at the start bit, 9 at the stop bit), give or take a cycle.
+    /// Sample `0..=9` of a byte (0 is the start bit, 9 the stop bit), plus or minus one cycle.
     AtSample(Index, u64, i64),
-    /// Cycles from the end of the forced level before, or from cycle 1.
+    /// Cycles from the end of the previous forced level, or from cycle 1.
     AfterLast(i64),
     Anywhere(u64),
 }
@@ -31,7 +31,7 @@ pub(super) enum Place {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Length {
     Cycles(u64),
-    /// Half a bit time, give or take: as long as a glitch can be.
+    /// Half a bit time, plus or minus one cycle: the maximum length of a glitch.
     HalfBit(i64),
     Bits(u64),
 }
@@ -66,7 +66,7 @@ pub(super) fn line_fault() -> impl Strategy<Value = LineFault> {
     ]
 }
 
-/// The faults' cycles: A4's (cycle, length, level).
+/// The faults as entries of A4: cycle, length, level.
 pub(super) fn force(config: &Config, faults: &[LineFault], byte_starts: &[u64]) -> Vec<(u64, u64, bool)> {
     let bit_time = bit_time(config);
     let byte = |which: Index| if byte_starts.is_empty() { 1 } else { *which.get(byte_starts) };

@@ -1,4 +1,4 @@
-//! What a host says in framed mode: good frames of every kind, and damaged ones.
+//! Frames of a host: valid ones of every kind, and damaged ones.
 
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -6,7 +6,7 @@ use proptest::sample::Index;
 use super::sends::Count;
 use crate::oracle::{Config, LONGEST_FRAME, frame, kinds};
 
-/// What is sent in one go.
+/// Bytes that are sent without a pause.
 #[derive(Debug, Clone)]
 pub(super) enum Utterance {
     Frame {
@@ -14,7 +14,7 @@ pub(super) enum Utterance {
         order: ChannelCommand,
         damage: Damage,
     },
-    /// Bytes that are no frame but by chance.
+    /// Bytes that rarely form a frame.
     Noise(Vec<u8>),
 }
 
@@ -22,7 +22,7 @@ pub(super) enum Utterance {
 pub(super) enum To {
     Controller(Index),
     All,
-    /// The first controller's address plus this: another's, or nobody's.
+    /// The first controller's address plus this number: that of another controller, or of none.
     Beside(u8),
 }
 
@@ -31,11 +31,11 @@ pub(super) enum ChannelCommand {
     Ticks {
         seq: Seq,
         count: usize,
-        /// The orders of all channels, tick after tick, over and over.
+        /// The commands of all channels for each tick, repeated.
         orders: Vec<(bool, Count)>,
         /// The last tick has no counts.
         last_is_zero: bool,
-        /// One order is beyond the slots.
+        /// One command exceeds the slots.
         too_many: Option<(Index, u64)>,
     },
     /// A frame without a body.
@@ -47,9 +47,9 @@ pub(super) enum ChannelCommand {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Seq {
     Expected,
-    /// One before the expected.
+    /// The sequence number before the expected one.
     Repeat,
-    /// The expected plus this.
+    /// The expected sequence number plus this number.
     Off(u8),
 }
 
@@ -59,11 +59,11 @@ pub(super) enum Damage {
     FlippedBit(Index),
     Lost(Index),
     Doubled(Index),
-    /// Cut off here.
+    /// Truncated after this number of bytes.
     Cut(Index),
 }
 
-/// Where not `calm`, one frame in six is damaged, and there is noise.
+/// Unless `calm`, one frame in six is damaged, and there is noise.
 pub(super) fn utterance(calm: bool) -> impl Strategy<Value = Utterance> {
     let to = prop_oneof![
         12 => any::<Index>().prop_map(To::Controller),
@@ -77,7 +77,7 @@ pub(super) fn utterance(calm: bool) -> impl Strategy<Value = Utterance> {
         1 => any::<Index>().prop_map(Damage::Doubled),
         1 => any::<Index>().prop_map(Damage::Cut),
     ];
-    // Zeros are what frames are made of, too.
+    // Frames also contain zeros.
     let byte = prop_oneof![2 => any::<u8>(), 1 => Just(0), 1 => 1..8_u8];
     prop_oneof![
         if calm { 2_000 } else { 14 } => (to, order(), damage).prop_map(|(to, order, damage)| Utterance::Frame { to, order, damage }),
@@ -124,7 +124,7 @@ fn order() -> impl Strategy<Value = ChannelCommand> {
     ]
 }
 
-/// Ticks for all, which nobody answers, with a step in every slot; and POSITIONS, so that they may ask while these run.
+/// Ticks for all without a reply, with a step in every slot; and POSITIONS, requested while they run.
 pub(super) fn ticks_and_positions() -> impl Strategy<Value = [Utterance; 2]> {
     let orders = prop::collection::vec((any::<bool>(), Just(Count::AllSlots)), 1..24);
     (any::<Index>(), 1..=12_usize, orders).prop_map(|(which, count, orders)| {
@@ -139,8 +139,8 @@ pub(super) fn ticks_and_positions() -> impl Strategy<Value = [Utterance; 2]> {
     })
 }
 
-/// A good frame that decodes to about the most bytes that are not OVERLONG, its body full of zeros, of other bytes, or
-/// of both.
+/// A valid frame that decodes to about the maximum length, with a body of zeros, of other bytes, or of
+/// both.
 pub(super) fn overlong() -> impl Strategy<Value = Utterance> {
     let most = LONGEST_FRAME - 6;
     (most - 2..=most + 5, 0..3_usize, any::<Index>(), any::<Index>()).prop_map(
@@ -149,7 +149,7 @@ pub(super) fn overlong() -> impl Strategy<Value = Utterance> {
             Utterance::Frame {
                 to: To::Controller(to),
                 order: ChannelCommand::Any(kinds::STATUS, (0..length).map(byte).collect()),
-                // Half of them not good after all: a flipped bit anywhere moves zeros about.
+                // Half of them are invalid after all: a flipped bit anywhere moves zeros.
                 damage: if bit.index(2) == 0 { Damage::None } else { Damage::FlippedBit(bit) },
             }
         },
@@ -168,7 +168,7 @@ impl To {
 }
 
 impl ChannelCommand {
-    /// The frame's kind and body, for a controller that expects this seq.
+    /// The frame's kind and body, for a controller that expects this sequence number.
     pub(super) fn kind_and_body(&self, config: &Config, expected_seq: u8) -> (u8, Vec<u8>) {
         let (seq, count, orders, last_is_zero, too_many) = match self {
             ChannelCommand::Plain(kind) => return (*kind, Vec::new()),
@@ -200,7 +200,7 @@ impl ChannelCommand {
 }
 
 impl Damage {
-    /// The bytes that are sent in the frame's place, at least one.
+    /// The bytes sent in place of the frame, at least one.
     pub(super) fn done_to(self, frame: &[u8]) -> Vec<u8> {
         let mut bytes = frame.to_vec();
         match self {
@@ -222,14 +222,14 @@ impl Damage {
     }
 }
 
-/// What a good frame says.
+/// The contents of a valid frame.
 pub(super) struct Good {
     pub(super) address: u8,
     pub(super) kind: u8,
     pub(super) body: Vec<u8>,
 }
 
-/// The bytes of an utterance for the line, and what it says where it is a good frame.
+/// The bytes on the line, and their contents if they are a valid frame.
 pub(super) fn said(
     utterance: &Utterance,
     line: &[Config],

@@ -1,5 +1,5 @@
-//! The framed host's schedule as it grows: when a frame is sent, aimed at replies and ticks' ends, which are foreseen
-//! as far as nothing goes wrong. What is foreseen only aims; it judges nothing.
+//! Builds the framed host's schedule: frames are sent at times that are critical for replies and ends of ticks, which are
+//! predicted for a run without errors. A prediction only chooses times; it decides no result.
 
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -7,26 +7,26 @@ use proptest::sample::Index;
 use super::frames::{Good, Utterance, said};
 use crate::oracle::{Config, bit_time, byte_start, kinds, stop_sample};
 
-/// What a send follows the one before by.
+/// The time of a send, relative to the previous one.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Pause {
-    /// Cycles after the last stop bit's end, whatever is being answered.
+    /// Cycles after the end of the last stop bit, even during a reply.
     Rude(u64),
     /// Cycles after the reply, too.
     Polite(u64),
-    /// Cycles after DE's rise for the last reply, or before.
+    /// Cycles after, or before, DE's rise for the last reply.
     DeRise(i64),
-    /// Cycles after DE's fall, or before.
+    /// Cycles after, or before, DE's fall.
     DeFall(i64),
     /// The last byte is delivered this many cycles after a tick's end.
     TickEnd(i64),
-    /// The last byte is delivered while a tick runs, after so many per mille of it.
+    /// The last byte is delivered during a tick, after this part of it, in per mille.
     InTick(u64),
-    /// The last byte is delivered this many cycles after the first pulse of such a slot may rise, or before.
+    /// The last byte is delivered this many cycles after, or before, the first pulse of this slot may rise.
     StepRise(Index, i64),
 }
 
-/// Where not `calm`, one in six comes while a reply is sent.
+/// Unless `calm`, one send in six is during a reply.
 pub(super) fn pause(calm: bool) -> impl Strategy<Value = Pause> {
     let polite = if calm { 400 } else { 9 };
     prop_oneof![
@@ -42,39 +42,39 @@ pub(super) fn pause(calm: bool) -> impl Strategy<Value = Pause> {
     ]
 }
 
-/// Beside the cycle in which STEP may rise.
+/// Next to the cycle in which STEP may rise.
 pub(super) fn step_rise() -> impl Strategy<Value = Pause> {
     (any::<Index>(), -1..=1_i64).prop_map(|(slot, offset)| Pause::StepRise(slot, offset))
 }
 
-/// A pause and what is said after it; where it is cut in two, and the pause between.
+/// A pause and the bytes after it; where they are split, and the pause between the parts.
 pub(super) type Turn = (Pause, Utterance, Option<(Index, Pause)>);
 
-/// A stretch of cycles.
+/// A range of cycles.
 #[derive(Clone, Copy)]
 struct Span {
     start: u64,
     end: u64,
 }
 
-/// What one controller does, if nothing goes wrong.
+/// Predicted state of one controller, without errors.
 #[derive(Default)]
 struct Foreseen {
     expected_seq: u8,
     stopped: bool,
-    /// The later ones last.
+    /// In the order of time.
     ticks: Vec<Span>,
 }
 
-/// The host's schedule as it grows.
+/// The host's schedule so far.
 pub(super) struct Host<'a> {
     line: &'a [Config],
     pub(super) sends: Vec<(u64, Vec<u8>)>,
-    /// Where the first controller delivers each send's last byte, as long as nothing disturbs the line.
+    /// Where the first controller delivers each send's last byte, without faults on the line.
     pub(super) deliveries: Vec<u64>,
-    /// The starts of all bytes of the host, and of replies.
+    /// The starts of all bytes of the host and of replies.
     pub(super) byte_starts: Vec<u64>,
-    /// The end of the last stop bit: no send may start before.
+    /// The end of the last stop bit: the earliest start of a send.
     pub(super) free_from: u64,
     foreseen: Vec<Foreseen>,
     /// DE of the latest reply.
@@ -94,12 +94,12 @@ impl<'a> Host<'a> {
         }
     }
 
-    /// From when on neither the host nor, as far as is foreseen, a controller sends.
+    /// The cycle from which on, by the prediction, nobody sends.
     pub(super) fn quiet_from(&self) -> u64 {
         self.reply.map_or(0, |reply| reply.end).max(self.free_from)
     }
 
-    /// Says something after a pause, and foresees what comes of it; where it is cut in two, the second part follows after another.
+    /// Adds a send after a pause, and predicts its effect; if it is split, the second part follows after another pause.
     pub(super) fn say(&mut self, (pause, utterance, cut): &Turn) {
         let (bytes, good) = said(utterance, self.line, |k| self.foreseen[k].expected_seq);
         match cut {
@@ -148,14 +148,14 @@ impl<'a> Host<'a> {
         self.free_from = byte_start(config, start, last) + byte_start(config, 0, 1);
     }
 
-    /// The start of a send that lasts `to_delivery` cycles up to the first tick's aim that a polite host can reach.
+    /// The start of a send of `to_delivery` cycles for the first target time of a tick that disturbs no reply.
     fn delivered_at(&self, to_delivery: u64, aim: impl Fn(&Span) -> u64) -> u64 {
         let ticks = self.foreseen.iter().flat_map(|foreseen| &foreseen.ticks);
         let reached = ticks.map(aim).filter(|delivery| *delivery >= self.quiet_from() + to_delivery).min();
         reached.map_or(self.quiet_from(), |delivery| delivery - to_delivery)
     }
 
-    /// Notes what a good frame does whose last byte starts at `last`.
+    /// Predicts the effect of a valid frame whose last byte starts at `last`.
     fn foresee(&mut self, last: u64, good: &Good) {
         for (config, foreseen) in self.line.iter().zip(&mut self.foreseen) {
             let own = config.address.unwrap_or(0);
@@ -166,7 +166,7 @@ impl<'a> Host<'a> {
             foreseen.take(config, p, good.kind, &good.body);
             if good.address == own {
                 let start = p + 10 * bit_time(config);
-                // A NAK's 18 bytes, and an ACK is one shorter; or the positions of all channels.
+                // A NAK has 18 bytes, an ACK one less; or the positions of all channels.
                 let tells_positions = good.kind == kinds::POSITIONS && good.body.is_empty();
                 let length = if tells_positions { 17 + 4 * config.channels as u64 } else { 18 };
                 let byte =

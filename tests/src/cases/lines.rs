@@ -1,4 +1,4 @@
-//! Framed controllers on one line (A6, A9), in conversation with a host.
+//! Framed controllers on one line (A6, A9), and a host that exchanges frames with them.
 
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -10,15 +10,15 @@ use super::host::{Host, Pause, Turn, pause, step_rise};
 use super::setup::framed_line;
 use crate::oracle::{Config, Input};
 
-/// No run of framed controllers is longer than this, cycles.
+/// Maximum cycles of a run of framed controllers.
 pub(super) const LONGEST_CONVERSATION: u64 = 200_000;
 
-/// One to four framed controllers on one line and a host that talks to them, at most 200 000 cycles long and mostly
-/// under 60 000.
+/// One to four framed controllers on one line and a host, at most 200 000 cycles long and mostly
+/// less than 60 000.
 ///
-/// `clock_hz` and `baud` are common to the line, and every address is another; a lone controller may have none. Frames of
-/// all kinds, good and damaged, mostly one after the other's reply, now and then into it, at a tick's end, or while a
-/// controller boots; in some cases with levels forced on the line.
+/// `clock_hz` and `baud` are common, and addresses differ; a single controller may have none. Valid and damaged frames of
+/// all kinds mostly follow the previous reply. Some collide with it, or come at a tick's end or during a
+/// boot. In some cases levels are forced on the line.
 pub fn framed_lines<M>(modes: M) -> impl Strategy<Value = (Vec<Config>, Input)>
 where
     M: Strategy<Value = Mode> + 'static,
@@ -64,8 +64,8 @@ where
     )
 }
 
-/// As [`framed_lines`], but all controllers have the first one's address, so that several answer at once and hear each
-/// other's replies as orders.
+/// Like [`framed_lines`], but all controllers have the first one's address, so several reply at once and receive each
+/// other's replies as frames.
 pub fn framed_lines_of_one_address<M>(modes: M) -> impl Strategy<Value = (Vec<Config>, Input)>
 where
     M: Strategy<Value = Mode> + 'static,
@@ -96,9 +96,9 @@ fn converse<'a>(line: &'a [Config], said: &[Turn]) -> Host<'a> {
 enum End {
     /// Cycles after the last send and reply.
     Quiet(u64),
-    /// In the midst of it, per mille of it.
+    /// During the activity, in per mille of it.
     PartWay(u64),
-    /// Cycles after a send's last delivery, which may leave its reply unfinished or not even begun.
+    /// Cycles after a send's last delivery, possibly before the end or the start of its reply.
     After(Index, u64),
 }
 

@@ -1,5 +1,5 @@
-//! Random lists for the segment engine (A8): intervals at and near the least, ramps, turns, dwells, and numbers that
-//! leave u64.
+//! Random lists for the segment engine (A8): intervals at and near the minimum, ramps, reversals, dwells, and numbers that
+//! exceed u64.
 
 use proptest::prelude::*;
 
@@ -7,19 +7,19 @@ use super::{Mode, configs};
 use crate::oracle::segments::Segment;
 use crate::oracle::{Config, refused};
 
-/// What the engine is given.
+/// Input of the segment engine.
 #[derive(Debug, Clone)]
 pub struct SegmentCase {
-    /// A configuration that the tick path would not refuse either.
+    /// A configuration that the tick path would accept, too.
     pub config: Config,
-    /// For each channel its start cycle and segments.
+    /// Start cycle and segments of each channel.
     pub lists: Vec<(u64, Vec<Segment>)>,
     /// The run is the cycles `0..cycles`.
     pub cycles: u64,
 }
 
-/// A list for each channel, up to 10 segments of up to 200 steps, at most 20 000 cycles of them; about one case in three
-/// breaks a rule of A8 somewhere.
+/// A list per channel, up to 10 segments of up to 200 steps, at most 20 000 cycles in total; about one case in three
+/// breaks a rule of A8.
 pub fn segment_lists(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = SegmentCase> {
     let configs =
         configs(modes).prop_filter("a configuration that is not refused", |config| !refused(config));
@@ -36,18 +36,18 @@ pub fn segment_lists(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value 
     })
 }
 
-/// A segment in proportion to the least interval.
+/// A segment relative to the minimum interval.
 #[derive(Debug, Clone)]
 enum Piece {
-    /// From one interval to another in so many steps, both given as what they are above the least, in 1/65536 cycle.
+    /// From one interval to another in a number of steps, both relative to the minimum, in 1/65536 cycle.
     Ramp {
         steps: u32,
         above: [u64; 2],
         dir: bool,
-        /// Added to `add`: a step too far below the least, perhaps.
+        /// Added to `add`, so that a step may be too far below the minimum.
         add_to_add: i64,
     },
-    /// As it stands.
+    /// As given.
     Plain(Segment),
 }
 
@@ -71,7 +71,7 @@ fn piece() -> impl Strategy<Value = Piece> {
     ]
 }
 
-/// Numbers about which the rules of refusal turn; some of them are taken.
+/// Numbers at the limits of the rules; some of them are accepted.
 fn rule_breaker() -> impl Strategy<Value = Piece> {
     let interval = prop_oneof![edge(u64::MAX), edge(1 << 63), any::<u64>(), 0..1_000_000_u64];
     let add = prop_oneof![
@@ -89,7 +89,7 @@ fn rule_breaker() -> impl Strategy<Value = Piece> {
     .prop_map(Piece::Plain)
 }
 
-/// About a number, and about as much below it as a list may have taken.
+/// Near a number, or below it by the length of a list.
 fn edge(number: u64) -> impl Strategy<Value = u64> {
     let below = prop_oneof![0..3_u64, 65_534..65_538_u64, 0..100_000_000_u64];
     prop_oneof![
@@ -105,7 +105,7 @@ impl Piece {
             Piece::Ramp { steps, above, dir, add_to_add } => (*steps, *above, *dir, *add_to_add),
         };
         let least = (config.pulse_width + (config.dir_hold + config.dir_setup).max(1)) << 16;
-        // Towards zero: no interval of the ramp is under the least.
+        // Rounded toward zero, so that no interval of the ramp is below the minimum.
         let add = (last as i64 - first as i64) / i64::from(steps - 1).max(1);
         Segment::Steps { steps, interval: least + first, add: add + add_to_add, dir }
     }

@@ -1,19 +1,19 @@
-//! What the host sends: packets whole and cut short, and noise, with pauses that aim at the gap and at
-//! ticks' ends.
+//! Sends of the host: complete and truncated packets and noise, with pauses near the gap and near
+//! ends of ticks.
 
 use proptest::prelude::*;
 use proptest::sample::Index;
 
 use crate::oracle::{Config, bit_time, byte_start, stop_sample};
 
-/// What a send follows the one before by.
+/// The time of a send, relative to the previous one.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Pause {
-    /// Cycles after the last stop bit's end.
+    /// Cycles after the end of the last stop bit.
     Idle(u64),
-    /// A5's gap: the first byte starts 45 bit times and this many cycles after the last one did.
+    /// A5's gap: the first byte starts 45 bit times and this many cycles after the start of the previous one.
     Gap(i64),
-    /// The last byte is delivered this many cycles after a tick's end, as far as [`Line`] foresees the ticks.
+    /// The last byte is delivered this many cycles after a tick's end, as predicted by [`Line`].
     TickEnd(i64),
 }
 
@@ -27,7 +27,7 @@ pub(super) fn pause() -> impl Strategy<Value = Pause> {
     ]
 }
 
-/// Some pieces are sent in two parts: where they are cut, and the pause between.
+/// Where some pieces are split, and the pause between the parts.
 pub(super) fn split() -> impl Strategy<Value = Option<(Index, Pause)>> {
     prop::option::weighted(0.15, (any::<Index>(), pause()))
 }
@@ -37,20 +37,20 @@ pub(super) enum Piece {
     Packet {
         to: To,
         orders: Vec<(bool, Count)>,
-        /// One order is beyond the slots.
+        /// One command exceeds the slots.
         too_many: Option<(Index, u64)>,
-        /// Bytes missing at the end; 0 for a whole packet.
+        /// Missing bytes at the end; 0 for a complete packet.
         missing: usize,
     },
     Noise(Vec<u8>),
 }
 
-/// Whom an addressed packet is for; means nothing where packets carry no address.
+/// Receiver of an addressed packet; ignored if packets have no address.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum To {
     Own,
     All,
-    /// The own address plus this, so never the own one.
+    /// The controller's address plus this number, so never that address.
     OtherAddress(u8),
 }
 
@@ -90,7 +90,7 @@ pub(super) fn piece() -> impl Strategy<Value = Piece> {
 }
 
 impl Piece {
-    /// Whether the controller takes it for a tick, if it has a place.
+    /// Whether the controller makes a tick of it, if the queue has space.
     pub(super) fn orders_tick(&self) -> bool {
         matches!(self, Piece::Packet { to: To::Own | To::All, too_many: None, missing: 0, .. })
     }
@@ -122,24 +122,24 @@ impl Piece {
     }
 }
 
-/// A tick's c0 and e.
+/// Start and end of a tick.
 struct Foreseen {
     start: u64,
     end: u64,
 }
 
-/// The host's schedule as it grows.
+/// The host's schedule so far.
 pub(super) struct Line<'a> {
     config: &'a Config,
     pub(super) sends: Vec<(u64, Vec<u8>)>,
-    /// Where each send's last byte is delivered, as long as nothing disturbs the line.
+    /// Where each send's last byte is delivered, without faults on the line.
     pub(super) deliveries: Vec<u64>,
     pub(super) byte_starts: Vec<u64>,
-    /// The end of the last stop bit: no send may start before.
+    /// The end of the last stop bit: the earliest start of a send.
     pub(super) free_from: u64,
-    /// Ticks that will start if nothing disturbs the line, the later ones last.
+    /// Ticks that start if there are no faults on the line, in the order of time.
     ticks: Vec<Foreseen>,
-    /// No idle pause is longer than a few cycles: the queue fills.
+    /// Idle pauses are at most a few cycles, so the queue fills.
     in_a_hurry: bool,
 }
 
@@ -184,7 +184,7 @@ impl<'a> Line<'a> {
         self.byte_starts.extend((0..=last).map(|j| byte_start(config, start, j)));
         self.free_from = byte_start(config, start, last) + byte_start(config, 0, 1);
     }
-    /// Notes the tick of a packet committed at `p`, unless it comes too early or finds the queue full.
+    /// Predicts the tick of a packet committed at `p`, unless it is too early or the queue is full.
     fn foresee(&mut self, p: u64) {
         let waiting = self.ticks.iter().filter(|tick| tick.start > p).count();
         if p >= self.config.boot && waiting < self.config.queue_depth {

@@ -1,4 +1,4 @@
-//! Random configurations at and around the limits that A4 and A7 set.
+//! Random configurations at and near the limits of A4 and A7.
 
 use std::ops::Range;
 
@@ -6,10 +6,10 @@ use proptest::prelude::*;
 
 use crate::oracle::{Config, byte_start, pulse_room};
 
-/// How the DIR lines run and how the channels' pulses stand to each other (A7).
+/// DIR lines, and the phasing of the pulses (A7).
 #[derive(Debug, Clone, Copy)]
 pub struct Mode {
-    /// One DIR line for all channels, or one a channel.
+    /// One DIR line for all channels, or one per channel.
     pub common_dir: bool,
     /// Staggered, or simultaneous.
     pub staggered: bool,
@@ -20,14 +20,14 @@ pub fn every_mode() -> impl Strategy<Value = Mode> {
     any::<[bool; 2]>().prop_map(|[common_dir, staggered]| Mode { common_dir, staggered })
 }
 
-/// Configurations of which about one in eight just misses a rule of A4 or A7 and is refused.
+/// Configurations of which about one in eight breaks a rule of A4 or A7 and is refused.
 pub fn configs(modes: impl Strategy<Value = Mode>) -> impl Strategy<Value = Config> {
     (link(4_000), wide_receiver(), drive(500..5_000), bus(), modes)
         .prop_map(|(link, permille, drive, bus, mode)| assemble(&link, permille, &drive, &bus, mode))
 }
 
-/// One to four controllers with raw packets on one line, all addressed; a few are refused. They have as many channels,
-/// for "packets for another address are consumed by length".
+/// One to four controllers with raw packets on one line, all addressed; a few are refused. They have the same number of
+/// channels, for "packets for another address are consumed by length".
 pub(super) fn raw_line<M>(modes: M) -> impl Strategy<Value = Vec<Config>>
 where
     M: Strategy<Value = Mode> + 'static,
@@ -42,7 +42,7 @@ where
     })
 }
 
-/// One to four controllers of the framed protocol on one line, seldom refused; a lone one may go without an address.
+/// One to four controllers of the framed protocol on one line, rarely refused; a single one may have no address.
 ///
 /// Bits are 11 to 20 cycles, so that a conversation of many frames stays short.
 pub(super) fn framed_line<M>(modes: M) -> impl Strategy<Value = Vec<Config>>
@@ -58,7 +58,7 @@ where
                 if let Period::Shortest(spare) = &mut drive.period {
                     *spare = (*spare).max(0);
                 }
-                // Each its own, but alike: deep enough for a TICKS or not.
+                // Each has its own, but similar: deep enough for TICKS or not.
                 bus.queue_depth = queue_depth.saturating_sub(bus.queue_depth - 1).max(1);
             }
             let mut line: Vec<Config> = together(&link, controllers.into_iter()).collect();
@@ -77,7 +77,7 @@ where
 
 type Controller = (u64, Drive, Bus, Mode);
 
-/// One to four controllers, one as often as several, each with an address that no other has.
+/// One to four controllers, one in half of the cases, with different addresses.
 fn addresses(controller: BoxedStrategy<Controller>) -> impl Strategy<Value = Vec<(u8, Controller)>> {
     let several = |count| prop::collection::vec(controller.clone(), count);
     let controllers = prop_oneof![2 => several(1..=1), 1 => several(2..=2), 1 => several(3..=4)];
@@ -140,7 +140,7 @@ struct Link {
     baud: u64,
 }
 
-/// Bit times of 11 cycles and more, seldom dividing the clock, now and then just short of A4's least.
+/// Bit times of 11 cycles and more, rarely a divisor of the clock, sometimes just below A4's minimum.
 fn link(longest_bit_hundredths: u64) -> impl Strategy<Value = Link> {
     let clock_hz = prop_oneof![1_000..10_000_u64, 10_000..1_000_000_u64];
     let bit_hundredths = prop_oneof![
@@ -152,12 +152,12 @@ fn link(longest_bit_hundredths: u64) -> impl Strategy<Value = Link> {
         .prop_map(|(clock_hz, hundredths)| Link { clock_hz, baud: clock_hz * 100 / hundredths })
 }
 
-/// The receiver's rate, per mille of the sender's: up to 8 % off.
+/// The receiver's rate in per mille of the sender's: up to 8 % off.
 fn wide_receiver() -> impl Strategy<Value = u64> {
     prop_oneof![4 => Just(1_000_u64), 3 => 960..1_040_u64, 2 => 920..1_080_u64]
 }
 
-/// As [`wide_receiver`], and mostly near enough for long frames.
+/// Like [`wide_receiver`], mostly near enough for long frames.
 fn narrow_receiver() -> impl Strategy<Value = u64> {
     prop_oneof![4 => Just(1_000_u64), 2 => 985..1_015_u64, 1 => 960..1_040_u64]
 }
@@ -168,15 +168,15 @@ struct Drive {
     dir_setup: u64,
     dir_hold: u64,
     period: Period,
-    /// Cycles beyond the shortest settling time that A7 takes.
+    /// Cycles beyond the minimum settling time of A7.
     settle_to_spare: i64,
 }
 
 #[derive(Debug, Clone, Copy)]
 enum Period {
-    /// Cycles beyond the shortest slot that A7 takes; below 0 it is refused.
+    /// Cycles beyond the minimum slot of A7; below 0 it is refused.
     Shortest(i64),
-    /// A tick lasts this many per mille of what a packet takes on the line: over 1000, queues fill.
+    /// Duration of a tick, in per mille of a packet's time on the line: above 1000, queues fill.
     TickInPackets(u64),
 }
 

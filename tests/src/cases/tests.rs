@@ -1,5 +1,4 @@
-//! The strategies keep their word: what they draw is legal input, and together it reaches the rules it aims
-//! at.
+//! The strategies draw valid input that reaches the intended rules.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +18,7 @@ fn drawn<S: Strategy>(strategy: S, count: usize) -> Vec<S::Value> {
     (0..count).map(|_| strategy.new_tree(&mut runner).expect("a case").current()).collect()
 }
 
-/// How often something was reached.
+/// How often each thing was reached.
 #[derive(Debug, Default)]
 struct Reached(BTreeMap<String, usize>);
 
@@ -53,7 +52,7 @@ impl Reached {
         self.count(format!("ticks: spread {spread}, common {common_dir}, staggered {staggered}"));
     }
 
-    /// So many things were reached, each at least so often.
+    /// Checks that this number of things was reached, each at least this often.
     fn check(&self, things: usize, least: usize) {
         println!("{self:#?}");
         assert_eq!(self.0.len(), things, "{self:#?}");
@@ -73,7 +72,7 @@ fn check_input(config: &Config, input: &Input, longest: u64) {
     assert!((1..=longest).contains(&input.cycles));
 }
 
-/// The line's common words are common, and no two controllers have one address.
+/// Common fields are equal, and addresses differ.
 fn check_line(line: &[Config]) {
     assert!((1..=4).contains(&line.len()));
     for (k, config) in line.iter().enumerate() {
@@ -129,17 +128,17 @@ fn raw_lines_move_several_controllers() {
     assert!(reached.0["refused"] < lines / 2, "{reached:#?}");
 }
 
-/// The levels of one signal, a cycle each.
+/// The levels of one signal, one per cycle.
 fn levels(run: &Run, bit: u32, cycles: u64) -> Vec<bool> {
     let ends = run.trace.iter().skip(1).map(|(cycle, _)| *cycle).chain([cycles]);
     let stretches = run.trace.iter().zip(ends);
     stretches.flat_map(|((from, levels), to)| vec![levels >> bit & 1 == 1; (to - from) as usize]).collect()
 }
 
-/// The cycles p of the frames whose reply tells positions: ten bit times before DE rises for it.
+/// The cycles p of the frames whose reply has positions: ten bit times before DE rises for it.
 fn positions_told(config: &Config, said: &[u8], de: &[bool]) -> Vec<u64> {
     let rises = (1..de.len()).filter(|at| de[*at] && !de[at - 1]);
-    // Code, address and kind; or, where the address is 0, which COBS takes out, two codes and the kind.
+    // Code, address and kind; if the address is 0, which COBS removes, two codes and the kind.
     let replies = said.split(|byte| *byte == 0);
     let told = rises.zip(replies).filter(|(_, reply)| reply.get(2) == Some(&(kinds::POSITIONS | 0x80)));
     told.map(|(rise, _)| rise as u64 - 10 * bit_time(config)).collect()
@@ -207,7 +206,7 @@ fn framed_lines_reach_every_fault_reply_and_state() {
     }
     println!("{cycles} cycles");
     // Eight faults or none, four states, eight modes, seven reasons, seven kinds, one to four controllers, a send in
-    // a reply; positions told of many channels, during boot, while STEP is high, and in the cycle in which it rises.
+    // a reply; positions of many channels, during boot, while STEP is high, and in the cycle in which it rises.
     assert!(reached.0.remove("refused").is_some_and(|times| times < lines / 4), "{reached:#?}");
     reached.check(8 + 1 + 4 + 8 + 7 + 7 + 4 + 1 + 4, lines / 60);
 }

@@ -1,4 +1,4 @@
-//! G6's axis: the place m, and the switches that it drives.
+//! G6's axis: the position m, and its switches.
 
 use super::parameters::{Axis, Input};
 use super::room::Room;
@@ -9,7 +9,7 @@ impl Room {
         self.plan.controller.axis.clone().unwrap_or_default()
     }
 
-    /// m follows a rise.
+    /// m follows a rise of STEP.
     pub(super) fn axis_follows(&mut self) {
         let axis = self.axis();
         if !self.s.en {
@@ -25,13 +25,13 @@ impl Room {
         }
     }
 
-    /// A hand on the axis while EN = 0, as EN is in this cycle.
+    /// A push by hand, possible while EN = 0 in this cycle.
     pub(super) fn push(&mut self, steps: i64) {
         let axis = self.axis();
         if self.s.en {
             return;
         }
-        // Reading: a push ends at `hard_min_steps` and `hard_max_steps`, too.
+        // Reading: a push also ends at `hard_min_steps` and `hard_max_steps`.
         let mut place = self.s.place + steps;
         if let Some(most) = axis.hard_max_steps
             && steps > 0
@@ -46,13 +46,13 @@ impl Room {
         self.s.place = place;
     }
 
-    /// Raw levels of the switches that m drives.
+    /// Raw levels of the axis' switches.
     pub(super) fn axis_drives_switches(&mut self) {
         let axis = self.axis();
         let m = self.s.place;
         let home = match (axis.home_from_steps, axis.home_to_steps) {
             (Some(from), Some(to)) => Some(from <= m && m <= to),
-            // Reading: one of the two alone drives nothing.
+            // Reading: with only one of the two there is no switch.
             _ => None,
         };
         let driven = [
@@ -67,9 +67,9 @@ impl Room {
         }
     }
 
-    /// "Reported": m - position less what it was when zero was set, before that when memory was first read.
+    /// "Reported": m - position minus its value when zero was set, or before that when memory was first read.
     pub(super) fn axis_error(&self) -> i64 {
-        // Reading: before both nothing is taken off.
+        // Reading: before both nothing is subtracted.
         self.s.place - i64::from(self.s.position) - self.s.place_of_zero.unwrap_or(0)
     }
 

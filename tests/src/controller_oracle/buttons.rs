@@ -1,4 +1,4 @@
-//! G2: what a press does; G6: the jog; G2 and G8: EDIT.
+//! G2: the effect of a press; G6: the jog; G2 and G8: EDIT.
 
 use super::engine::{Motion, Order};
 use super::parameters::{Input, Release};
@@ -29,7 +29,7 @@ pub(super) const ORDER: [Input; 21] = [
     Input::Key(9),
 ];
 
-/// EDIT's number and entry.
+/// Number and entry of EDIT.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Edit {
     pub(super) number: usize,
@@ -37,7 +37,7 @@ pub(super) struct Edit {
     pub(super) entry: Option<i64>,
 }
 
-/// Steps of a jog without end.
+/// Steps of a jog without limit.
 const WITHOUT_END: i128 = i128::MAX / 4;
 
 impl Room {
@@ -126,8 +126,8 @@ impl Room {
                 self.brake();
             }
             State::Running | State::Delay | State::Wait => {
-                // Reading: a wait whose time ends in this very cycle, its level there, keeps 0 cycles, and after
-                // `start` waits for ever (as 0 does when a wait begins).
+                // Reading: a wait whose time ends in this cycle, while its level is present, keeps 0 cycles, and after
+                // `start` waits without limit (like a wait of 0).
                 let left = self.s.timer.take().map(|timer| timer - self.now);
                 let state = self.s.state;
                 self.s.kept = Some(super::room::Kept { rem: 0, right: false, state, left });
@@ -182,8 +182,8 @@ impl Room {
         };
         let mut motion = Motion::constant(Order::Jog, rem, right, rate_hz);
         motion.first_is_least = true;
-        // Reading: `short_move` is no matter of a jog, not even of one that soft limits make short.
-        // `at_once`: u stays 0, so braking is stopping at once.
+        // Reading: `short_move` does not apply to a jog, even if soft limits make it short.
+        // `at_once`: u stays 0, so braking stops at once.
         if controller.jog.release == Release::Ramp {
             motion.level = controller.jog.level;
             motion.top = self.plan.table(motion.level).steps_to(rate_hz);
@@ -207,7 +207,7 @@ impl Room {
         self.s.edit = Edit { number, entry: None };
     }
 
-    /// READY, and the numbers are saved if `ok` has changed one since they were read or saved.
+    /// READY; the numbers are saved if `ok` has changed one since they were read or saved.
     fn back(&mut self) {
         if self.s.state != State::Edit {
             return;
@@ -218,7 +218,7 @@ impl Room {
         }
     }
 
-    /// A digit goes on the right of the entry; its last six count.
+    /// Appends a digit to the entry, which keeps its last six.
     fn digit(&mut self, digit: u8) {
         if self.s.state == State::Edit {
             let before = self.s.edit.entry.unwrap_or(0);
@@ -230,7 +230,7 @@ impl Room {
     fn enter(&mut self) {
         if let Some(entry) = self.s.edit.entry {
             if !self.s.numbers.is_in_range(&self.plan.controller, self.s.edit.number, entry) {
-                // Reading: nothing is entered then, and the number stays.
+                // Reading: without an entry the number does not change.
                 self.s.edit.entry = None;
                 return;
             }

@@ -1,4 +1,4 @@
-//! CRC-32/ISCSI from its specification, over bytes in one piece.
+//! CRC-32/ISCSI from its specification, over contiguous bytes.
 
 /// CRC-32/ISCSI (A6): polynomial 0x1EDC6F41, reflected, all ones in and out.
 pub(super) fn crc32c(bytes: &[u8]) -> u32 {

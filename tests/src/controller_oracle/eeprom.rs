@@ -1,4 +1,4 @@
-//! G7: the cells, the byte under way, the records and banks as bytes.
+//! G7: the cells, the byte in progress, the records and banks as bytes.
 
 use super::crc32c::crc32c;
 use super::numbers;
@@ -7,7 +7,7 @@ use super::parameters::{Controller, Initial};
 /// A journal record's length.
 pub(super) const RECORD: usize = 16;
 
-/// What a journal record says.
+/// Contents of a journal record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "G7's words")]
 pub struct Content {
@@ -18,7 +18,7 @@ pub struct Content {
     pub of_loop: u16,
 }
 
-/// A valid journal record, found in memory.
+/// A valid journal record in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "G7's words")]
 pub struct Record {
@@ -51,7 +51,7 @@ fn with_check(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Whether the last four bytes are the check of those before.
+/// Whether the last four bytes are the CRC of the others.
 fn is_valid(bytes: &[u8]) -> bool {
     let (body, check) = bytes.split_at(bytes.len() - 4);
     check == crc32c(body).to_le_bytes()
@@ -66,11 +66,11 @@ fn word(bytes: &[u8], at: usize) -> u32 {
 struct Writing {
     address: usize,
     bytes: Vec<u8>,
-    /// The byte under way.
+    /// The byte in progress.
     at: usize,
     /// Cycle in which it began.
     begun: u64,
-    /// What comes after the byte under way is dropped.
+    /// The bytes after the one in progress are dropped.
     rest_dropped: bool,
 }
 
@@ -118,14 +118,14 @@ impl Eeprom {
     }
 
     /// A record of the journal is being written.
-    // Reading: a bank of numbers that is being written leaves memory open.
+    // Reading: a bank of numbers that is being written leaves the memory open.
     pub(super) fn is_writing_record(&self) -> bool {
         self.writing.as_ref().is_some_and(|writing| writing.address < RECORD * self.slots)
     }
 
-    /// The newest complete record: valid, greatest seq, of equals the last.
-    // Reading: what the bytes say decides; only the slot that is being written has no complete record.
-    // Reading: seq is compared as it stands; after 2^32 - 1 the record of seq 0 is not the newest.
+    /// The newest complete record: valid, maximum seq, the last one of equals.
+    // Reading: only the bytes decide; only the slot that is being written has no complete record.
+    // Reading: seq is compared without wrapping: after 2^32 - 1 the record of seq 0 is not the newest.
     pub(super) fn newest(&self) -> Option<Record> {
         let mut newest: Option<Record> = None;
         for slot in 0..self.slots {
@@ -182,7 +182,7 @@ impl Eeprom {
         self.begin(RECORD * slot, journal_record(seq, content), c);
     }
 
-    /// A bank begins in c: the one that is not the newest valid.
+    /// A bank begins in c: the one that is not the newest valid one.
     pub(super) fn begin_bank(&mut self, numbers: &[i64], c: u64) {
         let (bank, seq) = self.newest_bank().map_or((0, 1), |(bank, seq, _)| (1 - bank, seq.wrapping_add(1)));
         self.begin(RECORD * self.slots + bank * self.bank_length(), numbers_bank(seq, numbers), c);
@@ -192,7 +192,7 @@ impl Eeprom {
         self.writing = Some(Writing { address, bytes, at: 0, begun: c, rest_dropped: false });
     }
 
-    /// Cycle in which the byte under way is there.
+    /// Cycle in which the byte in progress is complete.
     pub(super) fn byte_ends(&self, controller: &Controller) -> Option<u64> {
         self.writing.as_ref().map(|writing| writing.begun + controller.memory.byte_write_cycles)
     }
@@ -203,7 +203,7 @@ impl Eeprom {
         let Some(writing) = &mut self.writing else { return false };
         let cell = writing.address + writing.at;
         self.cells[cell] = writing.bytes[writing.at];
-        // Reading: a write is counted when its byte is complete or dies.
+        // Reading: a write is counted when its byte is complete or cut.
         self.writes[cell] += 1;
         writing.at += 1;
         writing.begun = c;
@@ -214,11 +214,11 @@ impl Eeprom {
         whole && record
     }
 
-    /// POWER_LOSS in c: the byte under way is finished (one begun in c is not), the rest is dropped.
-    // Reading: of a bank under way, too.
+    /// POWER_LOSS in c: the byte in progress is finished (one begun in c is not), the others are dropped.
+    // Reading: this applies to a bank, too.
     pub(super) fn drop_rest(&mut self, c: u64) {
         match &mut self.writing {
-            // Reading: a byte begun in c is no write of its cell.
+            // Reading: a byte begun in c is not a write of its cell.
             Some(writing) if writing.begun < c => writing.rest_dropped = true,
             _ => self.writing = None,
         }
@@ -226,7 +226,7 @@ impl Eeprom {
         self.save_is_wanted = false;
     }
 
-    /// OFF in c: x = c - b > 0 cycles of the byte under way were done, of w.
+    /// OFF in c: x = c - b > 0 of w cycles of the byte in progress have passed.
     pub(super) fn byte_dies(&mut self, c: u64, w: u64) {
         let Some(writing) = self.writing.take() else { return };
         let x = c - writing.begun;

@@ -1,4 +1,4 @@
-//! G4: a move, its decisions, its stops; G1's step 1 drives STEP and DIR by it.
+//! G4: a move, its decisions, its stops; step 1 of G1 drives STEP and DIR by it.
 //!
 //! ```text
 //! begin c: next = (c+1) << 16, DIR at max(c+1, last fall + H), decision
@@ -8,7 +8,7 @@
 use super::parameters::{Home, Input, ShortMove, Until};
 use super::room::{Room, State};
 
-/// Whose move it is.
+/// Owner of a move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Order {
     Group,
@@ -22,7 +22,7 @@ pub(super) enum Order {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Motion {
     pub(super) order: Order,
-    /// Steps not made, the one that is due included.
+    /// Remaining steps, including the one that is due.
     pub(super) rem: i128,
     pub(super) right: bool,
     /// u.
@@ -34,18 +34,18 @@ pub(super) struct Motion {
     pub(super) level: i64,
     pub(super) until: Option<Until>,
     pub(super) until_met: bool,
-    /// A profile's intervals not decided yet, the next one last.
+    /// Intervals of a profile that are not decided yet, the next one last.
     pub(super) profile: Option<Vec<u64>>,
     /// The first interval is Lm (jog).
     pub(super) first_is_least: bool,
     pub(super) braking: bool,
-    /// It waits for memory.
+    /// It waits for the memory.
     pub(super) waiting: bool,
     /// 48.16 cycles.
     next: u128,
     /// Rate interval of the step that is due.
     pub(super) due: Option<u128>,
-    /// Rate interval of the last step made.
+    /// Rate interval of the last step.
     pub(super) made: Option<u128>,
     /// A limit switch stopped it.
     pub(super) at_limit: bool,
@@ -54,7 +54,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// `rem` steps at one rate.
+    /// `rem` steps at a constant rate.
     pub(super) fn constant(order: Order, rem: i128, right: bool, plateau_hz: i64) -> Self {
         Self {
             order,
@@ -106,7 +106,7 @@ impl Room {
     /// Whether the limit switch of a direction stops a move.
     pub(super) fn limit_is_active(&self, right: bool) -> bool {
         let input = if right { Input::LimitMax } else { Input::LimitMin };
-        // A limit that is `switch` is no limit until the return.
+        // With `switch` a limit does not stop the move before the return.
         let is_switch = match (&self.s.homing, &self.plan.controller.home) {
             (Some(homing), Some(Home { switch, .. })) => !homing.is_return() && *switch == input,
             _ => false,
@@ -135,7 +135,7 @@ impl Room {
         self.waiting_move();
     }
 
-    /// A waiting move begins in the cycle in which memory is open.
+    /// A waiting move begins in the cycle in which the memory is open.
     pub(super) fn waiting_move(&mut self) {
         if !self.s.motion.as_ref().is_some_and(|motion| motion.waiting) || !self.memory_is_open() {
             return;
@@ -208,7 +208,7 @@ impl Room {
         let beyond = self.plan.interval(self.plan.controller.start_speed_hz);
         if let Some(motion) = &mut self.s.motion {
             motion.rem -= 1;
-            // Reading: a move's first step costs trust in the cycle in which it rises.
+            // Reading: the first step of a move costs trust in the cycle in which it rises.
             if motion.made.is_none() && motion.due.is_some_and(|interval| interval < beyond) {
                 self.s.trust = 0;
             }
@@ -217,7 +217,7 @@ impl Room {
         self.decide();
     }
 
-    /// The step that is due does not rise, a pulse that is high goes on, a change of DIR still to come does not come.
+    /// The due step does not rise, a high pulse continues, a pending change of DIR is dropped.
     pub(super) fn stop_at_once(&mut self) {
         self.s.dir_at = None;
         let step = self.s.step;
@@ -228,11 +228,11 @@ impl Room {
         }
     }
 
-    /// The move brakes, if it does not yet.
+    /// The move starts to brake, if it does not brake yet.
     pub(super) fn brake(&mut self) {
         let Some(motion) = &mut self.s.motion else { return };
         // A `profile` does not brake.
-        // Reading: not even while it waits for memory.
+        // Reading: not even while it waits for the memory.
         if motion.braking || motion.profile.is_some() {
             return;
         }
@@ -264,13 +264,13 @@ impl Room {
         }
     }
 
-    /// `start` in PAUSING: it no longer brakes, but for `until`, met before or now.
+    /// `start` in PAUSING: it stops braking, unless `until` was met before or is met now.
     pub(super) fn brakes_no_longer(&mut self) {
         let Some(motion) = &self.s.motion else { return };
-        // Reading: "now" asks for a step that is due; a move that has stopped asks again when the rest begins.
+        // Reading: "now" requires a due step; after a stop, `until` is checked again when the rest of the move begins.
         let now = motion.is_heeding() && self.until_is_met(motion);
         if let Some(motion) = &mut self.s.motion {
-            // Reading: met now, the braking goes on as it was: the step that is due and u more.
+            // Reading: if it is met now, braking continues unchanged: the due step and u more.
             motion.until_met |= now;
             motion.braking &= motion.until_met;
         }
@@ -279,24 +279,24 @@ impl Room {
     /// G2's trust, when a move ends or is cut.
     pub(super) fn jump_costs_trust(&mut self) {
         let beyond = self.plan.interval(self.plan.controller.start_speed_hz);
-        // Reading: "cut" is any move that ESTOP or the loss of power drops, STEP high or low.
+        // Reading: "cut" is any move that ESTOP or the loss of power drops, with STEP high or low.
         let made = self.s.motion.as_ref().and_then(|motion| motion.made);
         if made.is_some_and(|interval| interval < beyond) {
             self.s.trust = 0;
         }
     }
 
-    /// A group or return of some steps that would end outside is not begun.
+    /// A group or return that would end outside of the limits is not begun.
     pub(super) fn is_outside(&self, target: i128) -> bool {
         self.plan.controller.soft_limits.as_ref().is_some_and(|limits| {
             target < i128::from(limits.min_steps) || target > i128::from(limits.max_steps)
         })
     }
 
-    /// To position 0 by G3 at `return.speed_hz`, `return.level`; `false`: it would end outside, and is an alarm.
+    /// To position 0 by G3 at `return.speed_hz`, `return.level`; `false`: it would end outside, which is an alarm.
     pub(super) fn begin_return(&mut self, order: Order) {
         let position = i128::from(self.s.position);
-        // Reading: so is the return of homing: alarm SOFT_LIMIT, not HOMING.
+        // Reading: the return of homing, too, raises the alarm SOFT_LIMIT, not HOMING.
         if position != 0 && self.is_outside(0) {
             self.alarm(super::room::Alarm::SoftLimit);
             return;

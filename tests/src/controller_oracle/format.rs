@@ -1,4 +1,4 @@
-//! A case as the text of a scenario. Fields at their default are left out now and then, by a seed that the case gives.
+//! A case as the text of a scenario. Some fields with default values are omitted, by a seed computed from the case.
 
 use std::fmt::Write;
 
@@ -51,7 +51,7 @@ fn until(until: Option<Until>) -> String {
     })
 }
 
-/// (name, value, default), the last two as they are written.
+/// (name, value, default), the last two as text.
 type Field = (&'static str, String, String);
 
 struct Text {

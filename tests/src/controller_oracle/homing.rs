@@ -1,4 +1,4 @@
-//! G6's homing: seek, off, fine, and the return.
+//! G6's homing: the legs seek, off and fine, and the return.
 
 use super::engine::{Motion, Order};
 use super::parameters::Home;
@@ -13,11 +13,11 @@ enum Leg {
     Return,
 }
 
-/// Where homing is.
+/// State of homing.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Homing {
     leg: Leg,
-    /// The switch has done what the leg waits for.
+    /// The switch has reached the level that the leg waits for.
     found: bool,
 }
 
@@ -32,7 +32,7 @@ impl Room {
         self.plan.controller.home.as_ref().is_some_and(|home| self.level(home.switch))
     }
 
-    /// By a button, or as a group.
+    /// Started by a button, or as a group.
     pub(super) fn begin_homing(&mut self) {
         self.s.state = State::Homing;
         self.begin_leg(if self.switch() { Leg::Off } else { Leg::Seek });
@@ -60,7 +60,7 @@ impl Room {
         }
     }
 
-    /// sw is heeded while a step is due or the leg waits.
+    /// The switch is checked while a step is due or the leg waits.
     pub(super) fn switch_in_homing(&mut self) {
         let (Some(Homing { leg, found }), Some(home)) = (self.s.homing.clone(), &self.plan.controller.home)
         else {
@@ -74,7 +74,7 @@ impl Room {
         match leg {
             Leg::Seek if switch => self.stop_at_once(),
             Leg::Off if !switch => {
-                // Reading: whatever is left of `max_travel_steps`.
+                // Reading: regardless of the rest of `max_travel_steps`.
                 if let Some(motion) = &mut self.s.motion {
                     motion.rem = pull_off;
                 }
@@ -91,7 +91,7 @@ impl Room {
         self.s.homing = Some(Homing { leg, found: true });
     }
 
-    /// One leg begins where the one before ends.
+    /// A leg begins where the previous one ends.
     pub(super) fn leg_ends(&mut self) {
         let Some(Homing { leg, found }) = self.s.homing.take() else { return };
         let position = self.plan.controller.home.as_ref().map_or(0, |home| home.position_steps);

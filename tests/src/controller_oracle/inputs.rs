@@ -1,4 +1,4 @@
-//! G1, step 3: raw levels, debounced levels, presses.
+//! Step 3 of G1: raw levels, debounced levels, presses.
 
 use super::parameters::{INPUTS, Input, What};
 use super::room::{Room, State};
@@ -13,12 +13,12 @@ pub(super) struct Inputs {
     /// Debounced levels that rose and fell in this cycle.
     rose: [bool; INPUTS],
     fell: [bool; INPUTS],
-    /// Entries of the script that have come.
+    /// Processed entries of the script.
     entries: usize,
 }
 
 impl Inputs {
-    /// Before its first entry an input is 0, power 1.
+    /// Before its first entry an input is 0, and power 1.
     pub(super) fn at_reset() -> Self {
         let mut raw = [false; INPUTS];
         raw[Input::Power.index()] = true;
@@ -44,7 +44,7 @@ impl Inputs {
         self.raw[input.index()]
     }
 
-    /// SELF_TEST begins with debounced = raw; what is held then is no press.
+    /// SELF_TEST begins with debounced = raw; held inputs are no presses.
     pub(super) fn debounce_all(&mut self) {
         self.debounced = self.raw;
         self.forget_edges();
@@ -65,8 +65,8 @@ impl Inputs {
 }
 
 impl Room {
-    // Reading: controller 0's raw power, estop and clear are debounced by each with its own N.
-    /// N of an input whose debounced level would take `to`.
+    // Reading: each controller debounces controller 0's raw power, estop and clear with its own N.
+    /// N of an input whose debounced level would become `to`.
     fn debounce_cycles(&self, at: usize, to: bool) -> u64 {
         let controller = &self.plan.controller;
         if at == Input::Power.index() || (at == Input::Estop.index() && to) {
@@ -97,7 +97,7 @@ impl Room {
         }
         for at in 0..INPUTS {
             let raw = self.s.inputs.raw[at];
-            // It has stood through c - N..c if it changed in c - N or before.
+            // It was constant in c - N..c if it changed in c - N or before.
             let stood = self.now - self.s.inputs.changed[at] >= self.debounce_cycles(at, raw);
             if raw != self.s.inputs.debounced[at] && stood {
                 self.s.inputs.debounced[at] = raw;
@@ -112,7 +112,7 @@ impl Room {
         self.plan.script.get(self.s.inputs.entries).map(|entry| entry.cycle)
     }
 
-    /// The next cycle in which a debounced level may take its raw one.
+    /// The next cycle in which a debounced level may become its raw one.
     pub(super) fn next_debounced(&self) -> Option<u64> {
         if self.s.state == State::Off {
             return None;

@@ -1,4 +1,4 @@
-//! G7: what is read, and when a record or the numbers are wanted.
+//! G7: reading, and when a record or the numbers must be written.
 
 use super::eeprom::Content;
 use super::numbers::Numbers;
@@ -6,7 +6,7 @@ use super::parameters::Policy;
 use super::room::{Room, State};
 
 impl Room {
-    /// G1, step 2.
+    /// Step 2 of G1.
     pub(super) fn byte_complete(&mut self) {
         if self.s.eeprom.byte_ends(&self.plan.controller) == Some(self.now) {
             let record = self.s.eeprom.byte_complete(self.now);
@@ -36,7 +36,7 @@ impl Room {
         let error = self.s.place - i64::from(self.s.position);
         self.s.place_of_zero.get_or_insert(error);
         let controller = &self.plan.controller;
-        // Reading: if a number of the newest valid bank is out of range the scenario rules, not the other bank.
+        // Reading: if a number of the newest valid bank is out of range, the scenario's numbers apply, not the other bank.
         self.s.numbers = self
             .s
             .eeprom
@@ -50,7 +50,7 @@ impl Room {
     pub(super) fn closing_record_is_wanted(&self) -> bool {
         self.s.state == State::PowerLoss
             && self.s.memory_read
-            // Reading: where there is no record, it is another.
+            // Reading: a missing record counts as a different one.
             && self.s.eeprom.newest().is_none_or(|newest| {
                 newest.content.open
                     || newest.content.position != self.s.position
@@ -58,14 +58,14 @@ impl Room {
             })
     }
 
-    /// `write_ahead`: at rest, and the newest is open or has another position or trust.
+    /// `write_ahead`: idle, and the newest record is open or has another position or trust.
     fn closed_record_is_wanted(&self) -> bool {
         let rests =
             matches!(self.s.state, State::Ready | State::Debug | State::Edit | State::Paused | State::Alarm);
         rests
             && self.s.motion.is_none()
             && !self.s.step
-            // Reading: where there is no record, it is another.
+            // Reading: a missing record counts as a different one.
             && self.s.eeprom.newest().is_none_or(|newest| {
                 newest.content.open
                     || newest.content.position != self.s.position
@@ -73,7 +73,7 @@ impl Room {
             })
     }
 
-    /// What the journal wants: `Some(open)`.
+    /// The next record of the journal: `Some(open)`.
     fn record_wanted(&self) -> Option<bool> {
         if self.s.state == State::PowerLoss {
             return self.closing_record_is_wanted().then_some(false);
@@ -87,7 +87,7 @@ impl Room {
         }
     }
 
-    /// G1, step 5: memory, if idle and something is wanted, begins to write.
+    /// Step 5 of G1: an idle memory begins to write what is pending.
     pub(super) fn memory_begins(&mut self) {
         if !self.s.eeprom.is_idle() || self.s.state == State::Off {
             return;

@@ -1,22 +1,22 @@
-//! G8: the numbers that EDIT shows and the two banks hold.
+//! G8: the numbers that EDIT shows and the two banks contain.
 
 use super::parameters::{Controller, Group};
 
-/// The numbers that rule.
+/// The current numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Numbers {
     values: Vec<i64>,
     /// `ok` has changed one since they were read or saved.
-    // Reading: saved is what `back` orders, whenever it is written.
+    // Reading: the order of saving is that of `back`, regardless of the time of writing.
     pub(super) changed: bool,
 }
 
-/// Numbers before the first `move`'s.
+/// Numbers before those of the first `move`.
 const FIXED: usize = 8;
 /// Numbers of a `move`.
 const OF_MOVE: usize = 5;
 
-/// How many numbers a controller has.
+/// Number of a controller's numbers.
 pub(super) fn count(controller: &Controller) -> usize {
     Numbers::of_scenario(controller).values.len()
 }
@@ -88,7 +88,7 @@ impl Numbers {
     }
 
     pub(super) fn store(&mut self, number: usize, value: i64) {
-        // Reading: to store what is there already changes nothing.
+        // Reading: storing an equal number changes nothing.
         self.changed |= self.values[number] != value;
         self.values[number] = value;
     }
@@ -119,7 +119,7 @@ impl Numbers {
         self.values[7] as usize
     }
 
-    /// length, speed_hz, direction, level, delay_ms of the `move` that group `group` is.
+    /// length, speed_hz, direction, level, delay_ms of the `move` in group `group`.
     pub(super) fn of_move(&self, controller: &Controller, group: usize) -> [i64; OF_MOVE] {
         let is_move = |group: &&Group| matches!(group, Group::Move(_));
         let before = controller.groups[..group - 1].iter().filter(is_move).count();

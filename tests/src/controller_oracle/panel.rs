@@ -1,4 +1,4 @@
-//! G8: what the panel shows, and when a record of it is made.
+//! G8: the contents of the panel, and when it is recorded.
 
 use super::arithmetic::display_of_position;
 use super::room::{Room, State};
@@ -37,7 +37,7 @@ impl Room {
         display_of_position(self.s.position, numbers.pulses_per_unit(), numbers.decimals())
     }
 
-    /// A record as things are at the end of the cycle before: at 0, then where word, or in EDIT display, changed.
+    /// A record of the state at the end of the previous cycle: at 0, then if the word, or in EDIT the display, changed.
     pub(super) fn show(&mut self) {
         let record = PanelRecord {
             cycle: self.now,
@@ -45,7 +45,7 @@ impl Room {
             position: self.s.position,
             display: self.display(),
         };
-        // In EDIT every change of display has its record, so the last record has the display of the cycle before.
+        // In EDIT each change of the display has its record, so the last record has the display of the previous cycle.
         let is_new = self.panel.last().is_none_or(|last| {
             last.word != record.word || (self.s.state == State::Edit && last.display != record.display)
         });

@@ -1,4 +1,4 @@
-//! "The format": what a case holds, with the table's defaults.
+//! "The format": the fields of a case, with the table's defaults.
 
 /// A run of the controllers of one bus.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Case {
     pub d: u64,
     /// `dir_hold_cycles`.
     pub h: u64,
-    /// Cycles 0 to this less one; `None`: until nothing can change.
+    /// Cycles 0 to this minus 1; `None`: until nothing can change.
     pub run_cycles: Option<u64>,
     /// Controller i drives channel i.
     pub controllers: Vec<Controller>,
@@ -70,7 +70,7 @@ impl Default for Controller {
     }
 }
 
-/// A move too short for its speed.
+/// Behavior of a move that is too short for its speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the format's words")]
 pub enum ShortMove {
@@ -86,7 +86,7 @@ pub struct Until {
     pub level: bool,
 }
 
-/// The document's group.
+/// The paper's group.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the format's words")]
 pub struct Move {
@@ -104,7 +104,7 @@ impl Default for Move {
     }
 }
 
-/// `profile` by its intervals.
+/// A `profile` of intervals.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the format's words")]
 pub struct Profile {
@@ -113,7 +113,7 @@ pub struct Profile {
     pub delay_ms: i64,
 }
 
-/// A group of the program. Group numbers count from 1.
+/// A group of the program. Groups are counted from 1.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the format's words")]
 pub enum Group {
@@ -127,7 +127,7 @@ pub enum Group {
     Jump { to: usize, input: Option<Input>, level: bool },
 }
 
-/// What the release of a jog button does.
+/// Effect of releasing a jog button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the format's words")]
 pub enum Release {
@@ -209,7 +209,7 @@ pub enum Policy {
     WriteAhead,
 }
 
-/// What the EEPROM holds at reset.
+/// Contents of the EEPROM at reset.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the format's words")]
 pub enum Initial {
@@ -241,7 +241,7 @@ impl Default for Memory {
     }
 }
 
-/// A name of the script.
+/// An input of the script.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the format's words")]
 pub enum Input {
@@ -265,11 +265,11 @@ pub enum Input {
     In(u8),
 }
 
-/// How many names there are.
+/// Number of inputs.
 pub(super) const INPUTS: usize = 30;
 
 impl Input {
-    /// Place in an array of levels.
+    /// Index in an array of levels.
     pub(super) fn index(self) -> usize {
         match self {
             Self::Power => 0,
@@ -293,7 +293,7 @@ impl Input {
         }
     }
 
-    /// "the format"'s name.
+    /// Its name in "the format".
     pub fn name(self) -> String {
         match self {
             Self::Power => "power".into(),
@@ -317,13 +317,13 @@ impl Input {
         }
     }
 
-    /// Whether its entries of controller 0 are those of all.
+    /// Whether the entries of controller 0 apply to all.
     pub(super) fn is_common(self) -> bool {
         matches!(self, Self::Power | Self::Estop | Self::Clear)
     }
 }
 
-/// What an entry of the script does.
+/// Effect of an entry of the script.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the format's words")]
 pub enum What {

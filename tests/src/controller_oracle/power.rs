@@ -4,7 +4,7 @@ use super::parameters::Input;
 use super::room::{Alarm, Room, SelfTest, State};
 
 impl Room {
-    /// EN = 0 and STEP = 0 (a pulse is cut, and counts), DIR stays, outputs 0, program, move and timer dropped.
+    /// EN = 0 and STEP = 0 (a cut pulse counts), DIR stays, outputs 0; program, move and timer are dropped.
     fn motor_off(&mut self) {
         self.jump_costs_trust();
         self.s.trust = self.s.trust.min(1);
@@ -20,7 +20,7 @@ impl Room {
         self.drop_program();
     }
 
-    /// Raw 1, but for OFF and POWER_LOSS.
+    /// Raw 1, except in OFF and POWER_LOSS.
     pub(super) fn estop(&mut self) {
         if !self.s.inputs.is_raw(Input::Estop) || matches!(self.s.state, State::Off | State::PowerLoss) {
             return;
@@ -57,7 +57,7 @@ impl Room {
         }
     }
 
-    /// The count of `hold_up_cycles` begins.
+    /// `hold_up_cycles` are counted from here.
     fn power_falls(&mut self) {
         let dies_at = self.now + self.plan.controller.memory.hold_up_cycles;
         self.s.dies_at = Some(dies_at);
@@ -69,8 +69,8 @@ impl Room {
 
     fn power_while_lost(&mut self, power: bool) -> bool {
         if power {
-            // Power back by then ends this count.
-            // Reading: in the cycle itself in which it would die, too.
+            // If power is back by then, this count ends.
+            // Reading: even in the cycle in which the controller would switch off.
             self.s.dies_at = None;
             if self.s.eeprom.is_idle() && !self.closing_record_is_wanted() {
                 self.restart();
@@ -78,7 +78,7 @@ impl Room {
             return true;
         }
         match self.s.dies_at {
-            // A further fall starts a new one.
+            // Another fall starts a new count.
             None => self.power_falls(),
             Some(dies_at) if dies_at == self.now => self.die(),
             Some(_) => {}
@@ -86,7 +86,7 @@ impl Room {
         self.s.state != State::Off
     }
 
-    /// It dies: OFF; DIR = 0, position, trust 0.
+    /// It switches off: OFF; DIR = 0, position, trust 0.
     fn die(&mut self) {
         self.s.dies_at = None;
         self.s.state = State::Off;

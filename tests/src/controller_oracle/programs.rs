@@ -5,7 +5,7 @@ use super::engine::{Motion, Order};
 use super::parameters::{Group, Input, Profile};
 use super::room::{Alarm, Kept, Room, State};
 
-/// A program that runs.
+/// A running program.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Program {
     /// From 1.
@@ -82,7 +82,7 @@ impl Room {
                 *reached += 1;
                 let back = *reached < times;
                 if !back {
-                    // It nests: an outer one's next turn counts anew.
+                    // Repeats nest: the next loop of an outer one counts from 0 again.
                     *reached = 0;
                 }
                 self.group_ends(back.then_some(first), 0);
@@ -94,7 +94,7 @@ impl Room {
         }
     }
 
-    /// The rate and level that a group asks for, and its `until`.
+    /// The rate and level of a group, and its `until`.
     fn asked(&self, number: usize, group: &Group) -> Option<(i64, i64, Option<super::Until>)> {
         match group {
             Group::Move(order) => {
@@ -121,7 +121,7 @@ impl Room {
         self.begin_rest_of_group(steps.abs(), steps > 0);
     }
 
-    /// A move of `rem` steps by G3 for the group's speed and level.
+    /// A move of `rem` steps by G3, with the group's speed and level.
     pub(super) fn begin_rest_of_group(&mut self, rem: i128, right: bool) {
         let Some((number, group)) = self.group() else { return };
         let Some((rate_hz, level, until)) = self.asked(number, &group) else { return };
@@ -146,7 +146,7 @@ impl Room {
         self.begin(motion);
     }
 
-    /// The move of a group ends in c, its rest given up if `until` was met.
+    /// The move of a group ends in c; its remaining steps are dropped if `until` was met.
     pub(super) fn move_of_group_ends(&mut self, until_met: bool) {
         let Some((number, group)) = self.group() else { return };
         if until_met {
@@ -161,7 +161,7 @@ impl Room {
         self.group_ends(None, delay_ms);
     }
 
-    /// The program's `home` has come to its end.
+    /// The program's `home` has ended.
     pub(super) fn home_of_group_ends(&mut self) {
         self.base_is_here();
         self.group_ends(None, 0);
@@ -176,19 +176,19 @@ impl Room {
         }
     }
 
-    /// A group ends in c; `to` is the next one if it is not the one after.
+    /// A group ends in c; `to` is the next one, by default the following one.
     fn group_ends(&mut self, to: Option<usize>, delay_ms: i64) {
         let (used, loops) = (self.s.numbers.used(), self.s.numbers.loops());
         let Some(program) = &mut self.s.program else { return };
         program.group = to.unwrap_or(program.group + 1);
         if program.group > used {
-            // Group 1 follows the last.
+            // Group 1 follows the last one.
             program.group = 1;
             program.of_loop += 1;
             program.reached.fill(0);
         }
         if program.of_loop > loops {
-            // Reading: in PAUSING, too, for nothing is left that `start` could go on with.
+            // Reading: in PAUSING, too, because nothing is left that `start` could continue.
             self.drop_program();
             self.s.state = State::Ready;
             return;
@@ -212,7 +212,7 @@ impl Room {
         }
     }
 
-    /// A wait's time is over: if the level is not there it ends.
+    /// The time of a wait is over: without its level it ends.
     pub(super) fn time_of_wait_ends(&mut self) {
         let Some((input, level, then)) = self.wait() else { return };
         if self.level(input) == level {

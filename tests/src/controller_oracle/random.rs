@@ -1,7 +1,7 @@
-//! Random cases from a seed: small clocks, short waits, lively scripts; valid, and short enough for many.
+//! Random valid cases from a seed: slow clocks, short waits, many inputs; short enough for many cases.
 //!
-//! A script is drawn twice: a story of presses in sensible sequences, and then, when the story's run is known, entries
-//! aimed at cycles in which something happens in it.
+//! A script is drawn in two steps: a story of presses in meaningful sequences, and after its run entries in
+//! cycles in which something happens in that run.
 
 mod aim;
 mod programs;
@@ -13,9 +13,9 @@ use super::refusals::refused;
 use super::run::{Outcome, run_up_to};
 use script::Script;
 
-/// A run that is longer gets `run_cycles`.
+/// Longer runs get `run_cycles`.
 const MAX_CYCLES: u64 = 1_000_000;
-/// So does one of which more cycles cannot be passed over.
+/// So do runs with more cycles that cannot be skipped.
 const MAX_STEPS: u64 = 60_000;
 
 /// SplitMix64.
@@ -33,7 +33,7 @@ impl SplitMix64 {
     }
 }
 
-/// A case that the contract does not refuse.
+/// A valid case.
 pub fn random_case(seed: u64) -> Case {
     let mut dice = Dice(SplitMix64(seed ^ 0x57E9_5C09_E000_0000));
     loop {
@@ -44,21 +44,21 @@ pub fn random_case(seed: u64) -> Case {
     }
 }
 
-/// Throws.
+/// Draws random values.
 struct Dice(SplitMix64);
 
 impl Dice {
-    /// 0..n; 0 of none.
+    /// 0..n; 0 if n is 0.
     fn below(&mut self, n: u64) -> u64 {
         self.0.bits() % n.max(1)
     }
 
-    /// least..=most.
+    /// min..=max.
     fn between(&mut self, least: u64, most: u64) -> u64 {
         least + self.below(most.saturating_sub(least) + 1)
     }
 
-    /// least..=most.
+    /// min..=max.
     fn whole(&mut self, least: i64, most: i64) -> i64 {
         least + self.below((most - least).max(0) as u64 + 1) as i64
     }
@@ -71,7 +71,7 @@ impl Dice {
         from[self.below(from.len() as u64) as usize].clone()
     }
 
-    /// As likely in one doubling as in another.
+    /// Equally likely in each doubling.
     fn doublings(&mut self, least: u64, most: u64) -> u64 {
         let mut value = least;
         for _ in 0..self.below(64 - u64::from((most / least).leading_zeros())) {
@@ -120,7 +120,7 @@ impl Dice {
     fn write(&mut self, case: &mut Case, scripts: &[Script]) {
         for (controller, script) in case.controllers.iter_mut().zip(scripts) {
             controller.inputs = script.entries();
-            // Any order.
+            // In any order.
             if self.chance(20) && controller.inputs.len() > 1 {
                 let at = self.below(controller.inputs.len() as u64) as usize;
                 controller.inputs.rotate_left(at);
@@ -128,7 +128,7 @@ impl Dice {
         }
     }
 
-    /// The run; one that goes on for too long gets an end.
+    /// The run; one that is too long gets an end.
     fn outcome(&mut self, case: &mut Case) -> Option<Outcome> {
         let outcome = run_up_to(case, MAX_CYCLES, MAX_STEPS);
         if outcome.is_some() {
@@ -138,7 +138,7 @@ impl Dice {
         run_up_to(case, MAX_CYCLES, MAX_CYCLES)
     }
 
-    /// A controller's memory at reset, its journal and banks made by the encoder, sometimes damaged.
+    /// A controller's memory at reset: journal and banks made by the encoder, sometimes damaged.
     fn initial(&mut self, controller: &Controller) -> Initial {
         match self.below(10) {
             0 | 1 => Initial::Blank,

@@ -1,4 +1,4 @@
-//! G1, step 4: reactions in their order, each on what those before it left; and what the end of a move brings.
+//! Step 4 of G1: reactions in their order, each based on the results of the previous ones; and the effects of a move's end.
 
 use super::buttons::ORDER;
 use super::engine::Order;
@@ -27,7 +27,7 @@ impl Room {
         self.end_of_self_test();
     }
 
-    /// The end of a move, and of what begins in its place and ends in c, too.
+    /// The end of a move, and of a move that begins in its place and also ends in c.
     pub(super) fn ends_of_moves(&mut self) {
         while self.s.motion.as_ref().is_some_and(|motion| motion.over) {
             self.jump_costs_trust();
@@ -49,18 +49,18 @@ impl Room {
                             left: None,
                         });
                     } else {
-                        // `start` came after it had stopped: rem begins at its end as from PAUSED.
+                        // `start` came after the stop: the remaining steps begin at its end, as from PAUSED.
                         self.begin_rest(motion.rem, motion.right);
                     }
                 }
-                // Reading: a return that ends in PAUSING with nothing left is at its end: READY.
+                // Reading: a return that ends in PAUSING without remaining steps has ended: READY.
                 Order::Return => self.s.state = State::Ready,
                 Order::Group => self.move_of_group_ends(motion.until_met),
             }
         }
     }
 
-    /// A move of `rem` steps by G3 for the asked speed and level.
+    /// A move of `rem` steps by G3 with the requested speed and level.
     pub(super) fn begin_rest(&mut self, rem: i128, right: bool) {
         if self.s.program.is_some() {
             self.s.state = State::Running;
@@ -87,7 +87,7 @@ impl Room {
         }
     }
 
-    /// In s + `self_test_cycles` memory is read; then, at once or with the opening record complete, the test ends.
+    /// In s + `self_test_cycles` memory is read; then, at once or with the complete opening record, the test ends.
     fn end_of_self_test(&mut self) {
         if self.s.state != State::SelfTest {
             return;

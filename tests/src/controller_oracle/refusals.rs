@@ -1,4 +1,4 @@
-//! "Refused": the paths of what the text refuses; the relations, and ranges where they are simple.
+//! "Refused": the paths of refused values and relations, and simple ranges.
 
 use super::arithmetic::interval;
 use super::eeprom;
@@ -49,7 +49,7 @@ impl List<'_> {
         self.range("sensor_debounce_cycles", of.sensor_debounce_cycles as i64, 0, 1_000_000_000);
         self.range("pulses_per_unit", of.pulses_per_unit, 1, 999_999);
         self.range("decimals", of.decimals, 0, 3);
-        // Reading: a start speed above the greatest is the start speed's problem.
+        // Reading: a start speed above the maximum is a problem of the start speed.
         self.range("start_speed_hz", of.start_speed_hz, 10, max);
         let fits =
             (10..=10_000_000).contains(&max) && interval(self.case.clock_hz, max) >= self.least_interval();
@@ -162,13 +162,13 @@ impl List<'_> {
                 What::Level(input, _) => {
                     (Some(input.index()), driven(input) || (index > 0 && input.is_common()))
                 }
-                // Reading: a push is an input, too: once a cycle.
+                // Reading: a push is an input, too: at most one per cycle.
                 What::Push(steps) => (None, steps.abs() > 1_000_000),
             };
             let twice = !seen.insert((entry.cycle, input));
             let in_time = (1..=9_000_000_000_000_000).contains(&entry.cycle);
             if is_refused || twice || !in_time {
-                // Reading: the path is the entry's, the later one's of two.
+                // Reading: the path is that of the entry, of two that of the later one.
                 self.add(&format!("inputs[{at}]"));
             }
         }

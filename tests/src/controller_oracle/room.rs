@@ -46,7 +46,7 @@ pub enum Alarm {
     Memory = 7,
 }
 
-/// What does not change in a run.
+/// Constants of a run.
 #[derive(Debug)]
 pub(super) struct Plan {
     pub(super) clock_hz: u64,
@@ -54,7 +54,7 @@ pub(super) struct Plan {
     pub(super) d: u64,
     pub(super) h: u64,
     pub(super) controller: Controller,
-    /// Its own entries, and controller 0's of power, estop and clear, in the order of their cycles.
+    /// Its own entries, and controller 0's of power, estop and clear, in the order of time.
     pub(super) script: Vec<Entry>,
     /// G3's tables of levels 1 to 5.
     pub(super) tables: Vec<Table>,
@@ -76,32 +76,32 @@ impl Plan {
     }
 }
 
-/// Where the self-test is (G2).
+/// State of the self-test (G2).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SelfTest {
     /// s: its first cycle.
     pub(super) begun: u64,
-    /// There was cause for ALARM ESTOP.
+    /// ALARM ESTOP is pending.
     pub(super) estop: bool,
-    /// Memory has been read since power-up, and held no valid record.
+    /// Memory has been read since power-up, without a valid record.
     pub(super) none_valid: bool,
     /// The opening record is complete.
     pub(super) opened: bool,
 }
 
-/// What a pause keeps (G5).
+/// State saved by a pause (G5).
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Kept {
-    /// Steps not made; 0: a time is kept.
+    /// Remaining steps; 0: a time is saved.
     pub(super) rem: i128,
     pub(super) right: bool,
     /// DELAY, WAIT, or RUNNING without a move.
     pub(super) state: State,
-    /// The time left; `None`: a wait for ever.
+    /// The remaining time; `None`: a wait without limit.
     pub(super) left: Option<u64>,
 }
 
-/// Everything of a controller that changes in a run.
+/// The state of a controller.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Status {
     pub(super) state: State,
@@ -109,7 +109,7 @@ pub(super) struct Status {
     pub(super) trust: u8,
     pub(super) position: i32,
     pub(super) outputs: u8,
-    // The lines, and what is still to come of them.
+    // The lines, and their pending changes.
     pub(super) en: bool,
     pub(super) step: bool,
     pub(super) dir: bool,
@@ -118,7 +118,7 @@ pub(super) struct Status {
     pub(super) dir_at: Option<u64>,
     pub(super) motion: Option<Motion>,
     pub(super) program: Option<Program>,
-    /// Cycle of the end of DELAY, of a wait's time, or of the next group's begin.
+    /// Cycle of the end of DELAY, of the end of a wait, or of the start of the next group.
     pub(super) timer: Option<u64>,
     pub(super) kept: Option<Kept>,
     pub(super) homing: Option<Homing>,
@@ -127,7 +127,7 @@ pub(super) struct Status {
     pub(super) self_test: SelfTest,
     /// Memory has been read since power-up.
     pub(super) memory_read: bool,
-    /// Cycle in which a loss of power becomes OFF.
+    /// Cycle in which a power loss becomes OFF.
     pub(super) dies_at: Option<u64>,
     pub(super) inputs: Inputs,
     pub(super) eeprom: Eeprom,
@@ -135,12 +135,12 @@ pub(super) struct Status {
     pub(super) edit: Edit,
     /// m.
     pub(super) place: i64,
-    /// m - position when zero was set, before that when memory was first read.
+    /// m - position when zero was set, or before that when memory was first read.
     pub(super) place_of_zero: Option<i64>,
     pub(super) groups_begun: u64,
 }
 
-/// A controller in its cycle.
+/// A controller in one cycle.
 #[derive(Debug)]
 pub(super) struct Room {
     pub(super) plan: Plan,
@@ -190,12 +190,12 @@ impl Room {
         room
     }
 
-    /// G1, in its order. Gives (STEP, DIR, EN) as they are in `c`.
+    /// The steps of G1. Returns (STEP, DIR, EN) in `c`.
     pub(super) fn cycle(&mut self, c: u64) -> (bool, bool, bool) {
         self.now = c;
         self.show();
         self.engine();
-        // What reactions do to EN, to STEP and to DIR comes after this, so it shows from c + 1 on.
+        // Effects of reactions on EN, STEP and DIR show from c + 1 on.
         // Reading: DIR = 0 of OFF and of a restart shows from c + 1 on, too.
         let lines = (self.s.step, self.s.dir, self.s.en);
         self.byte_complete();
@@ -206,8 +206,8 @@ impl Room {
         lines
     }
 
-    /// The first cycle after this one for which the state holds a time; nothing else lets a cycle differ from the one
-    /// before if that one changed nothing.
+    /// The next cycle for which the state has a time; if the last cycle changed nothing, all cycles before it change
+    /// nothing, either.
     pub(super) fn next_time(&self) -> Option<u64> {
         let mut times = vec![
             self.s.fall_at,
@@ -236,14 +236,14 @@ impl Room {
     }
 
     /// An alarm drops the program.
-    // Reading: "out of ALARM it is 0" is said of the alarm.
+    // Reading: "out of ALARM it is 0" refers to the alarm.
     pub(super) fn alarm(&mut self, alarm: Alarm) {
         self.s.state = State::Alarm;
         self.s.alarm = alarm;
         self.drop_program();
     }
 
-    /// Program, move and timer dropped.
+    /// Drops program, move and timer.
     pub(super) fn drop_program(&mut self) {
         self.s.program = None;
         self.s.motion = None;

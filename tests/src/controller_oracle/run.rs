@@ -1,4 +1,4 @@
-//! A run: all controllers clock by clock, the bus, the records and the digests.
+//! A run: all controllers cycle by cycle, the bus, the records and the digests.
 
 use super::arithmetic::Table;
 use super::panel::PanelRecord;
@@ -6,10 +6,10 @@ use super::parameters::{Case, Controller, Entry, What};
 use super::room::{Alarm, Plan, Room, State};
 use crate::xxh64::xxh64;
 
-/// Groups that may begin in a run.
+/// Maximum number of groups that begin in a run.
 const MAX_GROUPS: u64 = 1_000_000;
 
-/// What a run leaves of a controller.
+/// Results of a controller.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ControllerOutcome {
     /// Panel records.
@@ -26,17 +26,17 @@ pub struct ControllerOutcome {
     pub trust: u8,
     /// Position at the end of the last cycle.
     pub position: i32,
-    /// The numbers that rule.
+    /// The current numbers.
     pub numbers: Vec<i64>,
     /// m.
     pub place: i64,
     /// The error that is reported (G6).
     pub error: i64,
-    /// Groups that began.
+    /// Number of groups that began.
     pub groups_begun: u64,
 }
 
-/// What a run leaves.
+/// Results of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// Records (A3).
@@ -45,25 +45,25 @@ pub struct Outcome {
     pub trace_digest: u64,
     /// XXH64 of the panel records of all controllers.
     pub panel_digest: u64,
-    /// Cycles 0 to this less one were run.
+    /// Cycles 0 to this minus 1 were run.
     pub cycles: u64,
-    /// More than 1 000 000 groups begin; all else is what was until then.
+    /// More than 1 000 000 groups began; all other results are those until then.
     pub work: Option<String>,
     /// Each controller.
     pub controllers: Vec<ControllerOutcome>,
 }
 
-/// The run, cycles passed over in which nothing can happen.
+/// The run, without the cycles in which nothing can happen.
 pub fn run(case: &Case) -> Outcome {
     finished(case, u64::MAX, u64::MAX, false).unwrap_or_else(|| unreachable!())
 }
 
-/// The run, if it ends before cycle `most_cycles`, of which no more than `most_steps` were not passed over.
+/// The run, if it ends before cycle `most_cycles`, with at most `most_steps` cycles that were not skipped.
 pub fn run_up_to(case: &Case, most_cycles: u64, most_steps: u64) -> Option<Outcome> {
     finished(case, most_cycles, most_steps, false)
 }
 
-/// The run, every cycle of it.
+/// The run, with every cycle.
 pub fn run_every_cycle(case: &Case) -> Outcome {
     finished(case, u64::MAX, u64::MAX, true).unwrap_or_else(|| unreachable!())
 }
@@ -98,7 +98,7 @@ fn finished(case: &Case, most_cycles: u64, most_steps: u64, every_cycle: bool) -
     let mut trace: Vec<(u64, u64)> = Vec::new();
     let mut work = None;
     let mut c = 0;
-    // The cycle after the last in which something happened or was shown.
+    // The cycle after the last change or record.
     let mut quiet_from = 0;
     let mut steps = 0;
     loop {
@@ -116,7 +116,7 @@ fn finished(case: &Case, most_cycles: u64, most_steps: u64, every_cycle: bool) -
             trace.push((c, levels));
         }
         if rooms.iter().map(|room| room.s.groups_begun).sum::<u64>() > MAX_GROUPS {
-            // Reading: groups of all controllers of the run are counted together.
+            // Reading: groups of all controllers are counted together.
             work = Some(format!("more than {MAX_GROUPS} groups begin"));
             break;
         }
@@ -127,19 +127,19 @@ fn finished(case: &Case, most_cycles: u64, most_steps: u64, every_cycle: bool) -
         }
         let next = rooms.iter().filter_map(Room::next_time).min();
         match (next, case.run_cycles) {
-            // What changed in c is heeded and shown in c + 1.
+            // A change in c takes effect and shows in c + 1.
             _ if changed || (every_cycle && (next.is_some() || case.run_cycles.is_some())) => c += 1,
             (Some(next), run_cycles) => c = next.min(run_cycles.unwrap_or(u64::MAX)),
             (None, Some(run_cycles)) => c = run_cycles,
             (None, None) => break,
         }
     }
-    // Reading: a run without `run_cycles` ends with the last cycle in which something changes or is shown to have.
+    // Reading: a run without `run_cycles` ends with the last cycle that changes something or records a change.
     let cycles = if work.is_some() { c + 1 } else { case.run_cycles.unwrap_or(quiet_from) };
     Some(outcome(rooms, trace, cycles, work))
 }
 
-/// One cycle of all; the levels of the bus in it.
+/// One cycle of all controllers; the levels of the bus in it.
 fn levels(rooms: &mut [Room], c: u64) -> u64 {
     // RX = TX = 1, DE = 0; the AND of their EN.
     let mut levels = 1 << 33 | 1 << 34 | 1 << 32;

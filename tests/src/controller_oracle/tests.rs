@@ -1,4 +1,4 @@
-//! The oracle against the text's own numbers, against itself, and what its random cases reach.
+//! Tests of the model: the text's numbers, agreement with itself, and the coverage of its random cases.
 
 mod reach;
 mod same;

@@ -1,8 +1,8 @@
-//! Bytes as somebody's recording: whatever a file holds, it is read, mapped, opened and made into a scenario without a
-//! panic, what was read is in order, and the scenario gives the same steps again.
+//! Bytes as a recording: any file is read, mapped, opened and converted to a scenario without a panic. The
+//! readings are in order, and the scenario reproduces the steps.
 //!
 //! ```text
-//! input = file, then 16 bytes that say how it is opened: the map, the clock, the rates
+//! input = file, then 16 bytes with the options: the map, the clock, the rates
 //! ```
 
 use arbitrary::{Result, Unstructured};
@@ -41,38 +41,38 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// Bytes at the end of an input that say how the file is opened.
+/// Bytes at the end of an input with the options for opening the file.
 const TAIL: usize = 16;
-/// Most changes, bytes or positions that are read.
+/// Maximum changes, bytes or positions of a reading.
 const MOST: usize = 2_000;
-/// Columns that all of it is looked at in.
+/// Columns of an overview.
 const COLUMNS: usize = 7;
-/// Positions may stand for so many steps; tables of more are left alone, since only their number makes the work.
+/// Maximum steps of a table of positions; larger tables only take more time.
 const MAX_STEPS: u64 = 20_000;
-/// Runs that cost no more records and bytes than these are made.
+/// Maximum cost, in records and bytes, of runs that are made.
 const RUN_RECORDS: u64 = 5_000;
 const RUN_BYTES: u64 = 500;
-/// Of a line whatever happens in a tick is work, too.
+/// On a serial line each tick of the clock is work, too.
 const RUN_CYCLES: u64 = 50_000_000;
 
-/// Reads bytes as a file, and as the samples of a session, and opens what they hold.
+/// Reads bytes as a file, and as the samples of a session, and opens the result.
 ///
 /// # Panics
-/// Where a property is broken.
+/// If a property is violated.
 pub fn check(data: &[u8]) {
     let (file, tail) = data.split_at(data.len().saturating_sub(TAIL));
     let session = session(file);
     for file in [file, data, &session] {
         let capture = whole(file);
         open(capture.clone(), &OpenOptions::default());
-        // Bytes that are used up read as zeros.
+        // Bytes beyond the end read as zeros.
         if let Ok(options) = asked(&mut Unstructured::new(tail), capture.channels.len()) {
             open(capture, &options);
         }
     }
 }
 
-/// What an input stands for.
+/// A readable description of an input.
 #[must_use]
 pub fn told(data: &[u8]) -> String {
     let (file, tail) = data.split_at(data.len().saturating_sub(TAIL));
@@ -80,7 +80,7 @@ pub fn told(data: &[u8]) -> String {
     format!("{}\nasked {options:?}", String::from_utf8_lossy(file))
 }
 
-/// A small file of each kind, of runs and by hand.
+/// A small file of each kind, made from runs and by hand.
 #[must_use]
 pub fn seeds() -> Vec<Vec<u8>> {
     let steps = r#"{"bus":{"channels":2},"source":{"segments":{"channels":[
@@ -120,7 +120,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
     files.map(|file| [&file[..], b"a map and a clock"].concat()).collect()
 }
 
-/// The trace of a run as the files that Stepscope writes.
+/// The trace of a run as the files of Stepscope.
 fn written(json: &str) -> Vec<Vec<u8>> {
     let (Ok(experiment), mut recording) = (Experiment::from_json(json), StoredRun::default()) else {
         return Vec::new();
@@ -140,7 +140,7 @@ fn written(json: &str) -> Vec<Vec<u8>> {
     vec![text.into_bytes(), table.into_bytes(), dump]
 }
 
-/// A session of sigrok with any samples of two channels, stored as they are.
+/// A sigrok session with any samples of two channels, stored without compression.
 fn session(samples: &[u8]) -> Vec<u8> {
     let metadata = b"[device 1]\ncapturefile=logic-1\nsamplerate=1 MHz\nprobe1=STEP\nprobe2=D1\nunitsize=1\n";
     let (mut zip, mut directory) = (Vec::new(), Vec::new());
@@ -148,7 +148,7 @@ fn session(samples: &[u8]) -> Vec<u8> {
     for (name, held) in files {
         let start = zip.len() as u32;
         let (length, check) = (held.len() as u32, Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(held));
-        // Version, flags, method, time, date, check, both lengths, lengths of name and of what is beside it.
+        // Version, flags, method, time, date, CRC, both lengths, lengths of the name and of the extra field.
         let mut head = [&20_u16.to_le_bytes()[..], &[0; 8], &check.to_le_bytes()].concat();
         head.extend([length, length].iter().flat_map(|length| length.to_le_bytes()));
         head.extend([name.len() as u16, 0].iter().flat_map(|length| length.to_le_bytes()));
@@ -163,7 +163,7 @@ fn session(samples: &[u8]) -> Vec<u8> {
     [zip, directory, end.concat()].concat()
 }
 
-/// How a file is opened.
+/// Options for opening a file.
 fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<OpenOptions> {
     let some = |bytes: &mut Unstructured<'_>, rates: &[u32]| -> Result<Option<u32>> {
         Ok(match bytes.int_in_range(0..=3_u8)? {
@@ -184,7 +184,7 @@ fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<OpenOptions> {
         ];
         let signal = *bytes.choose(&signals)?;
         let mark = if bytes.arbitrary()? { "!" } else { "" };
-        // One more than there is, now and then.
+        // Sometimes one more than there are.
         pairs.push(format!("{signal}={mark}#{}", bytes.int_in_range(0..=channels)?));
     }
     let map = (!pairs.is_empty()).then(|| pairs.join(","));
@@ -198,7 +198,7 @@ fn asked(bytes: &mut Unstructured<'_>, channels: usize) -> Result<OpenOptions> {
     })
 }
 
-/// What a file holds, in order, the same again, and with room for a few rows no more than those.
+/// The contents of a file: in order, reproducible, and with smaller limits at most as much.
 fn whole(file: &[u8]) -> Capture {
     let with_room = |max_rows| read(Cursor::new(file), &Limits { max_rows }, &mut |_| true);
     let Reading { capture, error } = with_room(MOST);
@@ -212,7 +212,7 @@ fn whole(file: &[u8]) -> Capture {
     capture
 }
 
-/// What tells the kinds of files apart, and what stands in them.
+/// What distinguishes the kinds of files, and their contents.
 #[must_use]
 pub fn words() -> BTreeSet<String> {
     let dump = "$timescale $scope $upscope $var $enddefinitions $dumpvars $dumpoff $dumpon $dumpall $comment $end module wire reg integer \
@@ -242,7 +242,7 @@ pub fn words() -> BTreeSet<String> {
     split.chain(together).map(str::to_owned).collect()
 }
 
-/// What a capture promises.
+/// The invariants of a capture.
 fn in_order(capture: &Capture, most: usize) {
     let Capture { channels, changes, bytes, positions, end, .. } = capture;
     assert!(channels.len() <= MAX_CHANNELS && capture.len() <= most);
@@ -264,18 +264,18 @@ fn in_order(capture: &Capture, most: usize) {
     assert!(kinds.into_iter().filter(|is_empty| !is_empty).count() <= 1, "{kinds:?}");
 }
 
-/// Opens a capture and looks at all that can be looked at.
+/// Opens a capture and requests all results.
 fn open(capture: Capture, options: &OpenOptions) {
     let ways = capture.positions.windows(2).map(|pair| pair[1].position.abs_diff(pair[0].position));
     let steps = ways.fold(0, u64::saturating_add);
     if (MAX_STEPS..=10_000_000).contains(&steps) {
         return;
     }
-    // Looked at where it lies it is the same; of a part the figures are.
+    // An overview of the whole file is the same; of a part only the figures are of the whole.
     let [whole, few] = [usize::MAX, 3].map(|max_records| {
         LoadedCapture::of_part(&capture, options, &Part { max_records, from_s: None, to_s: None })
     });
-    // From one part to another it is as if that were opened at once.
+    // Changing to another part gives the same result as opening that part.
     let part = Part { max_records: 3, from_s: None, to_s: None };
     let again = whole.clone().and_then(|whole| whole.with_part(&capture, options, &part));
     assert_eq!(again, few);
@@ -342,7 +342,7 @@ fn look_at(opened: &LoadedCapture) {
     again(opened);
 }
 
-/// A scenario that was made can be run, and is the same after its way through JSON.
+/// The scenario of a recording can be run, and round-trips through JSON.
 fn accepted(scenario: &Scenario) {
     assert_eq!(Scenario::from_json(&scenario.to_json()).as_ref(), Ok(scenario));
     let experiment = Experiment::new(scenario);
@@ -365,7 +365,7 @@ fn run(experiment: &Experiment) -> Option<Vec<Record>> {
     })
 }
 
-/// The scenario of steps gives each step in its cycle again.
+/// The scenario of steps has each step in its cycle.
 fn again(opened: &LoadedCapture) {
     let (clock_hz, channels) = (opened.clock_hz, opened.channels);
     let asked = StepRequest { clock_hz, channels, within_cycles: 0 };

@@ -1,22 +1,22 @@
-//! Bytes as the framed protocol (DESIGN A6): the decoder says the same in the same byte as a plain one that sees all
-//! bytes at once, and frames, ticks and replies are read as they were written.
+//! Bytes as the framed protocol (DESIGN A6): the decoder agrees in each byte with a simple one that has all
+//! bytes at once, and frames, ticks and replies round-trip.
 
 use crc::{CRC_32_ISCSI, Crc};
 use stepscope_core::peripheral::wire::frame::{Deframed, Deframer, Frame, Reply, Ticks, emit};
 
-/// Most decoded bytes of a frame, and fewest.
+/// Maximum and minimum decoded bytes of a frame.
 const MOST: usize = 600;
 const LEAST: usize = 6;
-/// Most bytes of a body: a frame less its address, kind and check.
+/// Maximum bytes of a body: a frame without address, kind and CRC.
 const MAX_BODY: usize = MOST - LEAST;
 
-/// What a byte completed: its index among all bytes, and the frame or the name of what is none.
+/// Result of a byte: its index among all bytes, and the frame or the name of the fault.
 type RowOutcome = (usize, Result<(u8, u8, Vec<u8>), &'static str>);
 
-/// Reads bytes as a stream, and as what one good frame after such a stream holds.
+/// Reads bytes as a stream, and as the contents of a valid frame after this stream.
 ///
 /// # Panics
-/// Where a property is broken.
+/// If a property is violated.
 pub fn check(data: &[u8]) {
     let found = verdicts(data);
     assert_eq!(found, expected(data));
@@ -37,7 +37,7 @@ pub fn check(data: &[u8]) {
     }
 }
 
-/// Frames of all kinds, replies, and streams that are no frames.
+/// Frames of all kinds, replies, and streams without frames.
 #[must_use]
 pub fn seeds() -> Vec<Vec<u8>> {
     let status = [2, 3, 7, 0x82, 0, 1, 0, 0, 0];
@@ -62,7 +62,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
         .collect()
 }
 
-/// What the core's decoder says.
+/// Result of the core's decoder.
 fn verdicts(bytes: &[u8]) -> Vec<RowOutcome> {
     let mut deframer = Deframer::default();
     let of = |deframed: Deframed<'_>| match deframed {
@@ -75,7 +75,7 @@ fn verdicts(bytes: &[u8]) -> Vec<RowOutcome> {
     each.filter_map(|(index, &byte)| Some((index, deframer.byte(byte).map(of)?))).collect()
 }
 
-/// What A6 says: run by run, each up to its end mark.
+/// Result by A6: run by run, each up to its delimiter.
 fn expected(bytes: &[u8]) -> Vec<RowOutcome> {
     let mut verdicts = Vec::new();
     let mut start = 0;
@@ -93,8 +93,8 @@ fn expected(bytes: &[u8]) -> Vec<RowOutcome> {
     verdicts
 }
 
-/// A run without its COBS: each byte with the index of the one that shows it (a zero is shown by the code after it); and
-/// whether the run ends where a code says.
+/// The decoded bytes of a run, each with the index of the byte that shows it (the next code shows a zero), and
+/// whether the run ends at the end of a block.
 fn decoded(run: &[u8]) -> (Vec<(usize, u8)>, bool) {
     let mut content = Vec::new();
     let mut code_at = 0;
@@ -125,7 +125,7 @@ fn check_of(held: &[u8]) -> [u8; 4] {
     Crc::<u32>::new(&CRC_32_ISCSI).checksum(held).to_le_bytes()
 }
 
-/// What a frame means survives being written and read again.
+/// The contents of a frame round-trip.
 fn read_as_written(frame: Frame<'_>) {
     if let Some(reply) = Reply::parse(frame) {
         let told = frame.positions();

@@ -1,5 +1,5 @@
-//! Bytes as a small peripheral and what happens on its line: whatever is sent and forced upon it (DESIGN A4 to A7), every
-//! way through the run leaves the same, and what it leaves agrees with itself.
+//! Bytes as a small peripheral and the activity on its line: with any bytes and forced levels (DESIGN A4 to A7), all ways
+//! to run it agree, and its results do not contradict each other.
 
 use crate::equivalence::{self, Ways};
 use arbitrary::{Result, Unstructured};
@@ -10,15 +10,15 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// No run is longer than this, in cycles.
+/// Maximum length of a run, in cycles.
 const LONGEST_RUN: u64 = 10_000;
-/// No scenario has more sends and glitches than this.
+/// Maximum number of sends and glitches.
 const MAX_ACTS: usize = 40;
 
-/// Runs the scenario that the bytes stand for in every way.
+/// Runs the scenario of the bytes in every way.
 ///
 /// # Panics
-/// Where a property is broken.
+/// If a property is violated.
 pub fn check(data: &[u8]) {
     let Some((scenario, slices, hurry)) = bounded(data) else { return };
     if let Ok(experiment) = Experiment::new(&scenario) {
@@ -30,15 +30,15 @@ pub fn check(data: &[u8]) {
     }
 }
 
-/// The scenario that the bytes stand for, as JSON.
+/// The scenario of the bytes, as JSON.
 #[must_use]
 pub fn told(data: &[u8]) -> String {
     bounded(data).map_or_else(String::new, |(scenario, ..)| scenario.compact().to_string())
 }
 
-/// What the bytes stand for, cut where it would run too long.
+/// The scenario of the bytes, limited in length.
 fn bounded(data: &[u8]) -> Option<(Scenario, Vec<u64>, u64)> {
-    // Bytes that are used up read as zeros, so there always is a scenario.
+    // Bytes beyond the end read as zeros, so there always is a scenario.
     let (mut scenario, slices, hurry) = drawn(&mut Unstructured::new(data)).ok()?;
     if Experiment::new(&scenario).is_ok_and(|experiment| experiment.cost().end_cycle > LONGEST_RUN) {
         scenario.run_cycles = Some(LONGEST_RUN);
@@ -46,7 +46,7 @@ fn bounded(data: &[u8]) -> Option<(Scenario, Vec<u64>, u64)> {
     Some((scenario, slices, hurry))
 }
 
-/// What published links hold: deflated, so as good as random bytes, and always the same.
+/// The contents of published links: deflated, so nearly random, and always the same.
 #[must_use]
 pub fn seeds() -> Vec<Vec<u8>> {
     super::links().filter_map(super::link::payload).collect()
@@ -60,7 +60,7 @@ fn drawn(bytes: &mut Unstructured<'_>) -> Result<(Scenario, Vec<u64>, u64)> {
     Ok((scenario, slices, hurry))
 }
 
-/// At and around the limits of A4 and A7; what just misses one is refused.
+/// At and near the limits of A4 and A7; a value that breaks a rule is refused.
 fn peripheral(bytes: &mut Unstructured<'_>) -> Result<Scenario> {
     let mut number = |least: u32, most: u32| bytes.int_in_range(least..=most);
     let (channels, slots, queue_depth) = (number(1, 16)?, number(1, 12)?, number(1, 4)?);
@@ -97,12 +97,12 @@ fn peripheral(bytes: &mut Unstructured<'_>) -> Result<Scenario> {
     })
 }
 
-/// Packets, noise and forced levels, one after another until the bytes are used up.
+/// Packets, noise and forced levels until the bytes are used up.
 fn acts(bytes: &mut Unstructured<'_>, scenario: &mut Scenario) -> Result<()> {
     let (channels, slots) = (usize::from(scenario.bus.channels), scenario.bus.slots);
     let mut sends = Vec::new();
     let mut free_from = 1;
-    // Cut somewhere, or to its own end.
+    // Truncated, or complete.
     if bytes.arbitrary()? {
         scenario.run_cycles = Some(bytes.int_in_range(1..=LONGEST_RUN)?);
     }
@@ -112,7 +112,7 @@ fn acts(bytes: &mut Unstructured<'_>, scenario: &mut Scenario) -> Result<()> {
         }
         let act = bytes.int_in_range(0..=7_u8)?;
         if act < 2 {
-            // From the send before it to the one after it.
+            // From the previous send to the next one.
             let before = bytes.int_in_range(0..=4_000_u64)?;
             scenario.line.glitches.push(Glitch {
                 start_cycle: free_from.saturating_sub(before).max(1),
@@ -131,7 +131,7 @@ fn acts(bytes: &mut Unstructured<'_>, scenario: &mut Scenario) -> Result<()> {
                 None => Vec::new(),
             };
             for _ in 0..channels {
-                // One step more than there are slots, now and then.
+                // Sometimes one step more than there are slots.
                 let order = bytes.int_in_range(0..=slots * 2 + 2)?;
                 sent.push((order / 2) | (order << 7));
             }

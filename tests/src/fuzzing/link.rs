@@ -1,4 +1,4 @@
-//! Texts as share links (PAGE "Share link"): none makes the opener fail, and what opens is a scenario within the limits
+//! Texts as share links (PAGE "Share link"): none causes a panic, and a link that opens is a scenario within the limits
 //! whose own link opens as the same scenario.
 
 use super::scenario::MAX_PROBLEMS;
@@ -9,10 +9,10 @@ use stepscope_core::scenario::{
     link::{LinkError, MAX_FRAGMENT_BYTES, MAX_JSON_BYTES, decode, encode},
 };
 
-/// Opens bytes as a link, as it stands and with its check put right, and as what a link with a good check holds.
+/// Opens bytes as a link, unchanged and with a corrected CRC, and as the contents of a link with a valid CRC.
 ///
 /// # Panics
-/// Where a property is broken.
+/// If a property is violated.
 pub fn check(data: &[u8]) {
     if let Ok(text) = str::from_utf8(data) {
         open(text);
@@ -24,19 +24,19 @@ pub fn check(data: &[u8]) {
     open(&around('z', data));
 }
 
-/// The links that were published, and what they hold.
+/// The published links, and their contents.
 #[must_use]
 pub fn seeds() -> Vec<Vec<u8>> {
     let held = super::links().filter_map(payload);
     super::links().map(|link| link.as_bytes().to_vec()).chain(held).collect()
 }
 
-/// What a link holds: a scenario's JSON, mostly deflated.
+/// The contents of a link: a scenario's JSON, mostly deflated.
 pub(super) fn payload(link: &str) -> Option<Vec<u8>> {
     BASE64URL_NOPAD.decode(link.split('.').nth(2)?.as_bytes()).ok()
 }
 
-/// A link with a good check around any payload.
+/// A link with a valid CRC and any payload.
 #[must_use]
 pub fn around(codec: char, payload: &[u8]) -> String {
     with_check(&format!("{VERSION}.{codec}.{}", BASE64URL_NOPAD.encode(payload)))
@@ -46,10 +46,10 @@ fn with_check(text: &str) -> String {
     format!("c={text}.{:08x}", Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(text.as_bytes()))
 }
 
-/// Opens a link: what comes out is a scenario within the limits, or a reason.
+/// Opens a link: the result is a scenario within the limits, or an error.
 ///
 /// # Panics
-/// Where a property is broken.
+/// If a property is violated.
 pub fn open(fragment: &str) {
     match decode(fragment) {
         Ok(scenario) => {

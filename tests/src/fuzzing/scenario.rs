@@ -1,5 +1,5 @@
-//! Texts as scenarios (PAGE "Share link"): none makes the reader or the judge fail, what is accepted is work of a size
-//! that was bounded before, and what reads survives its way through JSON.
+//! Texts as scenarios (PAGE "Share link"): none causes a panic, accepted scenarios have bounded work, and
+//! a scenario round-trips through JSON.
 
 use crate::equivalence::{self, Ways};
 use stepscope_core::{
@@ -13,23 +13,23 @@ use stepscope_core::{
     sim::{Experiment, plant_run::PlantRun},
 };
 
-/// Most wrong fields that one reading lists.
+/// Maximum invalid fields that a reading lists.
 pub const MAX_PROBLEMS: usize = 100;
-/// What one run may be at most: packets or bytes of a script, and the records of the busiest ticks.
+/// Maximum cost of a run: packets or bytes of a script, and the records of the busiest ticks.
 const MAX_SENDS: u64 = 4 << 20;
 const MAX_BYTES: u64 = 2_000_000 * 17;
 const MAX_RECORDS: u64 = 1 + (MAX_BYTES + 10_000) * (10 + 16 * 127 * 4);
 /// Of segments: an edge in each cycle of 48 bits on each channel.
 const MAX_SEGMENT_RECORDS: u64 = 16 << 48;
 
-/// Runs that cost no more records and cycles than these are made, and made again clock by clock.
+/// Maximum records and cycles of runs that are made, also clock by clock.
 const RUN_RECORDS: u64 = 5_000;
 const RUN_CYCLES: u64 = 5_000;
-/// So are runs whose plants cost no more grid steps of all motors.
+/// Maximum grid steps of all motors of these runs.
 const RUN_MOTOR_STEPS: u64 = 20_000;
 
-/// Short runs with a plant: two motors that chop on a weak supply, one of them on a spring, all sensors, and a threshold that
-/// is reached; a self-test; a torque that throws the rotor.
+/// Short runs with a plant: two motors with choppers on a weak supply, one of them with a spring, all sensors, and a threshold
+/// that is reached; a self-test; a torque that accelerates the rotor without limit.
 const PLANTS: [&str; 3] = [
     r#"{"run_cycles":20000,"bus":{"channels":2},"plant":{"step_cycles":40,"buffer_uf":100,"source_ohm":1,"idle_ma":5,
         "current_sensor":{"poles":3,"adc_steps":2},"encoder":{"period_steps":7,"noise_lsb":2,"hysteresis_lsb":1,"seed":5},
@@ -45,17 +45,17 @@ const PLANTS: [&str; 3] = [
         "source":{"segments":{"channels":[{"segments":[{"steps":{"count":9,"interval_q16":104857600}}]}]}}}"#,
 ];
 
-/// Reads, judges and, if it is cheap, runs a text; what is no UTF-8 is no text.
+/// Reads, validates and, if it is cheap, runs a text. Bytes that are not UTF-8 are ignored.
 ///
 /// # Panics
-/// Where a property is broken.
+/// If a property is violated.
 pub fn check(data: &[u8]) {
     let Ok(text) = str::from_utf8(data) else { return };
     let Ok(experiment) = judge(text) else { return };
     let cost = experiment.cost();
     if cost.records <= RUN_RECORDS && cost.motor_grid_steps <= RUN_MOTOR_STEPS {
         let (scenario, _) = Scenario::from_json_lenient(text);
-        // An overload and a self-test change what a device would do by itself.
+        // An overload and a self-test change the results of the device.
         let plant = scenario.plant.as_ref();
         if plant.is_none_or(|plant| plant.protection.is_none() && !plant.self_test) {
             let ways = Ways { slices: &[1, 7, 100], hurry: 100, most_clocked: RUN_CYCLES };
@@ -65,11 +65,11 @@ pub fn check(data: &[u8]) {
     }
 }
 
-/// Runs the plants of an experiment that has some, and again in slices: every number is one, both runs have the same bits, and
-/// what the plants did can be told. Returns the grid steps of all motors, so that a caller can check that runs were made.
+/// Runs the plants of an experiment, whole and in slices: no value is NaN, both runs have the same bits, and the
+/// results can be printed. Returns the grid steps of all motors, so that a caller can check that runs were made.
 ///
 /// # Panics
-/// Where a property is broken.
+/// If a property is violated.
 pub fn drive(experiment: &Experiment) -> u64 {
     let Some(plants) = experiment.plants() else { return 0 };
     let parts = || plants.setups.iter().map(|_| (Digest::default(), FirstSlips::default())).collect();
@@ -107,13 +107,13 @@ pub fn seeds() -> Vec<Vec<u8>> {
     super::scenarios().chain(PLANTS).map(|json| json.as_bytes().to_vec()).collect()
 }
 
-/// Reads and judges a text: its problems can be printed, and what it accepts is bounded.
+/// Reads and validates a text: its problems can be printed, and accepted work is bounded.
 ///
 /// # Errors
-/// The problems of a text that is refused.
+/// The problems of an invalid text.
 ///
 /// # Panics
-/// Where a property is broken.
+/// If a property is violated.
 pub fn judge(text: &str) -> Result<Experiment, Problems> {
     let (scenario, unread) = Scenario::from_json_lenient(text);
     assert!(unread.as_ref().is_none_or(|unread| unread.len() <= MAX_PROBLEMS));
@@ -140,7 +140,7 @@ fn bounded(experiment: &Experiment) {
     assert!(cost.records <= most && cost.end_cycle <= END_OF_TIME, "{cost:?}");
 }
 
-/// Every problem says something, and no number that is none.
+/// Every problem has a message without NaN.
 fn told(problems: &[Problem], given: &str) {
     assert!(!problems.is_empty(), "refused without a reason");
     for problem in problems {

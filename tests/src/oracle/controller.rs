@@ -1,4 +1,4 @@
-//! One controller, cycle by cycle, in A7's order within one cycle; and what a run records of it.
+//! One controller, cycle by cycle, in A7's order within a cycle; and the record of its run.
 
 use super::frames::Frames;
 use super::line::{Receiver, byte_start, send};
@@ -6,7 +6,7 @@ use super::orders::Device;
 use super::packets::Packets;
 use super::{Config, FRAMING, Run, RxEvent, State, UNDERRUN, bit_time, bits};
 
-/// A reply on its way: DE is high, and TX as given, from `de_rises` on for as many cycles as there are levels.
+/// A reply: DE is high, and TX has the given levels, from `de_rises` on.
 struct Reply {
     de_rises: u64,
     tx: Vec<bool>,
@@ -28,14 +28,14 @@ fn reply(config: &Config, p: u64, bytes: &[u8]) -> Reply {
     Reply { de_rises, tx }
 }
 
-/// What a controller puts on the line in a cycle.
+/// Levels that a controller puts on the line in a cycle.
 #[derive(Clone, Copy)]
 pub(super) struct Driven {
     pub(super) de: bool,
     pub(super) tx: bool,
 }
 
-/// How the bytes are framed.
+/// The kind of framing.
 enum Framing {
     Raw(Packets),
     Framed(Frames),
@@ -67,7 +67,7 @@ impl<'a> Controller<'a> {
         }
     }
 
-    /// DE and TX in `cycle`. What the line does in the same cycle has no part in it: a reply lies 10 bit times ahead.
+    /// DE and TX in `cycle`. They do not depend on the line in the same cycle, because a reply starts 10 bit times later.
     pub(super) fn driven(&self, cycle: u64) -> Driven {
         let tx = self.reply.as_ref().and_then(|reply| {
             let index = cycle.checked_sub(reply.de_rises)?;
@@ -77,7 +77,7 @@ impl<'a> Controller<'a> {
         Driven { de: tx.is_some(), tx: tx.unwrap_or(true) }
     }
 
-    /// One cycle: the sequencer, the gap timer, the byte, last the status. `rx` is the line as this controller hears
+    /// One cycle: the sequencer, the gap timer, the byte, and finally the status. `rx` is the line as this controller receives
     /// it.
     pub(super) fn clock(&mut self, cycle: u64, rx: bool, driven: Driven) {
         let config = self.config;
@@ -85,7 +85,7 @@ impl<'a> Controller<'a> {
         if underrun && config.framed {
             self.device.faults |= UNDERRUN;
         }
-        // "What a frame does to EN, STEP and to the start of ticks shows from cycle p + 1 on": these levels are settled
+        // "What a frame does to EN, STEP and to the start of ticks shows from cycle p + 1 on": these levels are taken
         // before the byte.
         let step = self.device.sequencer.step(cycle);
         let levels = step << bits::STEP
@@ -105,16 +105,16 @@ impl<'a> Controller<'a> {
                 self.device.faults |= packets.hear(config, heard, cycle, &mut self.device.sequencer);
             }
             Framing::Framed(frames) => match heard {
-                // "A byte with a framing error is missing (FRAMING)". Reading: it is as if it had not been sent; what
-                // is left of its run is judged like any other run ("the frame then fails its check" is what comes of
-                // that, not a rule of its own): an error before a good frame's first byte does not harm the frame. And
-                // the flag is set also where OVERLONG drops what is heard: "no further flag" speaks of the run's own.
+                // "A byte with a framing error is missing (FRAMING)". Reading: as if it had not been sent. The other bytes
+                // of its run are checked like any run ("the frame then fails its check" follows from
+                // this and is no separate rule), so an error before the first byte of a valid frame does not affect the frame.
+                // The flag is also set while OVERLONG drops bytes: "no further flag" refers to flags of the run.
                 RxEvent::FramingError => self.device.faults |= FRAMING,
                 RxEvent::Byte(byte) => match frames.hear(byte) {
                     Err(fault) => self.device.faults |= fault,
                     Ok(None) => {}
                     Ok(Some(good)) => {
-                        // This cycle's levels are recorded: its rises count.
+                        // The levels of this cycle are recorded: its rises count.
                         let positions = &self.recorder.positions;
                         if let Some(bytes) = self.device.take(config, &good, cycle, positions) {
                             let before = self.reply.as_ref().map_or(0, |r| r.de_rises + r.tx.len() as u64);
@@ -127,7 +127,7 @@ impl<'a> Controller<'a> {
         }
     }
 
-    /// What is left after `cycles` cycles.
+    /// The results after `cycles` cycles.
     pub(super) fn finish(self, cycles: u64) -> Run {
         Run {
             trace: self.recorder.trace,

@@ -1,9 +1,8 @@
-//! A6 on the wire: CRC-32C, COBS and the frames they make, written out by hand so that nothing of them is shared
-//! with the core.
+//! A6 on the wire: CRC-32C, COBS and frames, written independently of the core.
 
 use super::{CRC, OVERLONG, SHORT_PACKET};
 
-/// More decoded bytes than these are OVERLONG.
+/// Maximum decoded bytes; more are OVERLONG.
 pub const LONGEST_FRAME: usize = 600;
 
 /// CRC-32/ISCSI (Castagnoli): polynomial 0x1EDC6F41 with its bits reversed, all ones before and after.
@@ -19,11 +18,11 @@ pub fn crc32c(bytes: &[u8]) -> u32 {
 }
 
 /// COBS of `bytes`, without the 0x00 that ends a frame: blocks of up to 254 bytes that are not zero, each after a
-/// code byte, its length + 1; a block of fewer stands for a zero after it, except the last.
+/// code byte, its length + 1; a shorter block is followed by an implied zero, except the last one.
 pub fn cobs(bytes: &[u8]) -> Vec<u8> {
     let mut encoded = Vec::new();
     let mut block: Vec<u8> = Vec::new();
-    // After a full block at the very end nothing is left to say.
+    // Nothing follows a full block at the very end.
     let mut block_due = true;
     let mut put = |block: &mut Vec<u8>| {
         encoded.push(block.len() as u8 + 1);
@@ -47,7 +46,7 @@ pub fn cobs(bytes: &[u8]) -> Vec<u8> {
     encoded
 }
 
-/// A good frame as its bytes on the wire: COBS of `address kind body crc`, then 0x00.
+/// The bytes of a valid frame on the wire: COBS of `address kind body crc`, then 0x00.
 pub fn frame(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
     let mut decoded = vec![address, kind];
     decoded.extend(body);
@@ -58,7 +57,7 @@ pub fn frame(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
     wire
 }
 
-/// What an accepted frame says.
+/// Contents of an accepted frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Frame {
     pub(super) address: u8,
@@ -66,26 +65,26 @@ pub(super) struct Frame {
     pub(super) body: Vec<u8>,
 }
 
-/// The run of bytes since the last 0x00, decoded as far as it goes.
+/// The run of bytes since the last 0x00, decoded so far.
 #[derive(Default)]
 pub(super) struct Frames {
     decoded: Vec<u8>,
-    /// Some byte has come since the last 0x00.
+    /// At least one byte has arrived since the last 0x00.
     begun: bool,
-    /// Bytes of the block still to come; 0: the next byte is a code.
+    /// Remaining bytes of the block; 0: the next byte is a code.
     left_in_block: u8,
-    /// The block stands for a zero after it, if another code follows.
+    /// The block is followed by an implied zero, if another code follows.
     owes_zero: bool,
     /// OVERLONG: "everything up to and including the next 0x00 is dropped, with no further flag".
     dropping: bool,
 }
 
 impl Frames {
-    /// Takes a delivered byte: an accepted frame where it ends one, or the fault it sets.
+    /// Processes a delivered byte: returns the accepted frame that it completes, or the fault that it sets.
     ///
-    /// Reading: a 0x00 before any other byte since reset is "nothing", as is one after a 0x00.
-    /// Reading: a block of 254 with no code after it ends a run as well as one with the code 0x01 after it does; both
-    /// decode to the same.
+    /// Reading: a 0x00 before any other byte since reset is "nothing", like one after a 0x00.
+    /// Reading: a block of 254 ends a run with or without a code 0x01 after it; both
+    /// decode to the same bytes.
     pub(super) fn hear(&mut self, byte: u8) -> Result<Option<Frame>, u16> {
         if byte == 0x00 {
             let run = std::mem::take(self);
@@ -117,7 +116,7 @@ impl Frames {
         Ok(())
     }
 
-    /// Judges a run that a 0x00 has ended: "a run that is not COBS or decodes to fewer than 6 bytes (SHORT_PACKET);
+    /// Checks a run that a 0x00 has ended: "a run that is not COBS or decodes to fewer than 6 bytes (SHORT_PACKET);
     /// a failed check (CRC, judged before the address)".
     fn judged(self) -> Result<Frame, u16> {
         if self.left_in_block > 0 || self.decoded.len() < 6 {

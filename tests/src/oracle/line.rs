@@ -1,4 +1,4 @@
-//! A4: the line, by the sender's rule and what is forced on it, and the receiver that looks at it.
+//! A4: the line, by the sender's rule and its forced levels, and the receiver.
 
 use super::{Config, Input, bit_time};
 
@@ -12,7 +12,7 @@ pub fn bit_start(config: &Config, start: u64, k: u64) -> u64 {
     start + k * config.clock_hz / config.baud
 }
 
-/// The cycle in which a byte that the receiver first saw at `t` is delivered, or found to have no stop bit
+/// The cycle in which a byte that the receiver first saw at `t` is delivered, or has no stop bit
 /// (A4).
 pub fn stop_sample(config: &Config, t: u64) -> u64 {
     t + bit_time(config) / 2 + 9 * bit_time(config)
@@ -34,13 +34,13 @@ pub(super) fn send(config: &Config, t0: u64, bytes: &[u8], mut hold: impl FnMut(
     }
 }
 
-/// What the host sends, a level a cycle: high, then the sends' bits.
+/// The host's levels, one per cycle: high, then the bits of the sends.
 pub(super) fn host_levels(config: &Config, input: &Input) -> Vec<bool> {
     let mut line = vec![true; input.cycles as usize];
     for (t0, bytes) in &input.sends {
         send(config, *t0, bytes, |from, to, level| {
             for cycle in from..to.min(input.cycles) {
-                // "RX = TX = 1" at cycle 0 (A3), whatever is sent.
+                // "RX = TX = 1" at cycle 0 (A3), regardless of sends.
                 if cycle >= 1 {
                     line[cycle as usize] = level;
                 }
@@ -50,12 +50,12 @@ pub(super) fn host_levels(config: &Config, input: &Input) -> Vec<bool> {
     line
 }
 
-/// What is forced on the line, in the entries' order; `None` where nothing is.
+/// The forced levels, in the order of the entries; `None` without one.
 pub(super) fn forced_levels(input: &Input) -> Vec<Option<bool>> {
     let mut forced = vec![None; input.cycles as usize];
     for &(start, length, level) in &input.forced {
         for cycle in start..(start + length).min(input.cycles) {
-            // "RX = TX = 1" at cycle 0 (A3), whatever is forced.
+            // "RX = TX = 1" at cycle 0 (A3), regardless of forced levels.
             if cycle >= 1 {
                 forced[cycle as usize] = Some(level);
             }
@@ -64,16 +64,16 @@ pub(super) fn forced_levels(input: &Input) -> Vec<Option<bool>> {
     forced
 }
 
-/// The line's level in every cycle of the run as long as no controller drives it.
+/// The line's level in every cycle of the run while no controller drives it.
 pub fn line_levels(config: &Config, input: &Input) -> Vec<bool> {
     let host = host_levels(config, input);
     host.into_iter().zip(forced_levels(input)).map(|(sent, forced)| forced.unwrap_or(sent)).collect()
 }
 
-/// What the receiver makes of the line.
+/// Result of the receiver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RxEvent {
-    /// A byte, delivered.
+    /// A delivered byte.
     Byte(u8),
     /// The stop bit was low: the byte is dropped.
     FramingError,
@@ -87,16 +87,16 @@ pub(super) enum Receiver {
         t: u64,
         byte: u8,
     },
-    /// After a framing error: until the line has been high for a cycle.
+    /// After a framing error: until the line has been high for one cycle.
     WaitingForHigh,
 }
 
 impl Receiver {
-    /// What the receiver delivers in `cycle`, in which it hears the line `high` or low.
+    /// The receiver's result in `cycle`, in which the line is `high` or low.
     pub(super) fn hear(&mut self, config: &Config, cycle: u64, high: bool) -> Option<RxEvent> {
         let bit_time = bit_time(config);
         let mut heard = None;
-        // The state that a cycle leaves is the next cycle's: "arms again in the next cycle", "is armed from
+        // The state after a cycle applies in the next one: "arms again in the next cycle", "is armed from
         // the next cycle on", "arms in the cycle after the first cycle … in which the line is high".
         *self = match *self {
             Receiver::Armed if high => Receiver::Armed,
@@ -121,7 +121,7 @@ impl Receiver {
     }
 }
 
-/// The deliveries and framing errors that a receiver makes of a line, each with its cycle.
+/// The deliveries and framing errors of a receiver on a line, each with its cycle.
 pub fn hear(config: &Config, line: &[bool]) -> Vec<(u64, RxEvent)> {
     let mut receiver = Receiver::Armed;
     let mut heard = Vec::new();

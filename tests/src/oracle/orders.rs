@@ -1,4 +1,4 @@
-//! A6: what a controller does with a good frame, and what it answers.
+//! A6: the effect of a valid frame, and its reply.
 
 use super::frames::{Frame, frame};
 use super::packets::too_many_steps;
@@ -7,7 +7,7 @@ use super::{BAD_SEQ, Config, QUEUE_OVERFLOW, State, TOO_MANY_STEPS};
 
 /// The kinds of frames that a host sends.
 pub mod kinds {
-    /// Body seq, count, then count*n orders: queues ticks.
+    /// Body seq, count, then count*n commands: queues ticks.
     pub const TICKS: u8 = 0x01;
     /// EN = 1, leaves STOPPED.
     pub const ENABLE: u8 = 0x02;
@@ -19,13 +19,13 @@ pub mod kinds {
     pub const STOP: u8 = 0x05;
     /// Expected seq = 0, fault flags cleared.
     pub const RESYNC: u8 = 0x06;
-    /// Replies only; the ACK tells the position counters after the status.
+    /// Only replies; the ACK has the position counters after the status.
     pub const POSITIONS: u8 = 0x07;
-    /// A reply's, where the order was refused; an ACK has the order's kind with bit 7 set.
+    /// Kind of a reply to a refused frame; an ACK has the frame's kind with bit 7 set.
     pub const NAK: u8 = 0xFF;
 }
 
-/// Why an order was refused; the number is the reply's.
+/// Reason of a refusal; the number is that in the reply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Reason {
     BadSeq = 1,
@@ -38,7 +38,7 @@ enum Reason {
 }
 
 impl Reason {
-    /// The fault that a NAK for this reason sets, 0 for none: "The other NAKs set none".
+    /// The fault set by a NAK with this reason, 0 for none: "The other NAKs set none".
     fn fault(self) -> u16 {
         match self {
             Reason::BadSeq => BAD_SEQ,
@@ -49,7 +49,7 @@ impl Reason {
     }
 }
 
-/// What a controller's orders act on.
+/// The state that commands change.
 pub(super) struct Device {
     pub(super) sequencer: Sequencer,
     pub(super) faults: u16,
@@ -87,8 +87,8 @@ impl Device {
         }
     }
 
-    /// Does what a good frame, its 0x00 delivered in cycle `p`, says; returns the reply's bytes on the wire, if there
-    /// is one. `positions` are the counters as they stand in that cycle: "rises of STEP in cycles up to and including
+    /// Executes a valid frame whose 0x00 is delivered in cycle `p`; returns the reply's bytes on the wire, if there
+    /// is one. `positions` are the counters in that cycle: "rises of STEP in cycles up to and including
     /// p count".
     pub(super) fn take(
         &mut self,
@@ -103,7 +103,7 @@ impl Device {
         }
         let outcome = self.execute(config, good, p);
         // "taken in cycle p after the frame took effect". Reading: the flag that a NAK sets is such an effect, so the
-        // NAK's own status shows it.
+        // status of the NAK includes it.
         if let Err(reason) = outcome {
             self.faults |= reason.fault();
         }
@@ -131,8 +131,8 @@ impl Device {
     }
 
     fn execute(&mut self, config: &Config, good: &Frame, p: u64) -> Result<(), Reason> {
-        // Reading: a kind that does not exist is UNKNOWN_KIND whatever its body is, and a body is judged before
-        // anything else of a kind that has none.
+        // Reading: an unknown kind is UNKNOWN_KIND with any body, and for a kind without a body the body is checked
+        // first.
         match good.kind {
             kinds::TICKS => return self.queue_ticks(config, &good.body, p),
             kinds::ENABLE..=kinds::POSITIONS if !good.body.is_empty() => return Err(Reason::BadBody),

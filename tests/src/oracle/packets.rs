@@ -5,7 +5,7 @@ use super::{Config, FRAMING, QUEUE_OVERFLOW, RxEvent, SHORT_PACKET, TOO_MANY_STE
 
 /// Raw host, paced (A9): "packet j starts at boot + 1 + j*M*Ts".
 ///
-/// Whether the line can carry a packet in M*Ts cycles is the caller's affair.
+/// The caller checks whether the line can carry a packet in M*Ts cycles.
 pub fn packets_schedule(config: &Config, packets: &[Vec<u8>]) -> Vec<(u64, Vec<u8>)> {
     let mut schedule = Vec::new();
     for (j, packet) in packets.iter().enumerate() {
@@ -15,7 +15,7 @@ pub fn packets_schedule(config: &Config, packets: &[Vec<u8>]) -> Vec<(u64, Vec<u
     schedule
 }
 
-/// What A5 keeps of the bytes heard so far.
+/// The bytes received so far (A5).
 #[derive(Default)]
 pub(super) struct Packets {
     /// A5's d, the cycle of the last delivery or framing error.
@@ -25,7 +25,7 @@ pub(super) struct Packets {
 }
 
 impl Packets {
-    /// The gap timer's part of `cycle`; returns the fault it sets, 0 for none.
+    /// The gap timer's part of `cycle`; returns the fault that it sets, 0 for none.
     pub(super) fn gap(&mut self, config: &Config, cycle: u64) -> u16 {
         if self.last_heard.is_none_or(|d| cycle != d + 45 * bit_time(config) + 1) {
             return 0;
@@ -38,9 +38,9 @@ impl Packets {
         SHORT_PACKET
     }
 
-    /// What the receiver delivers in `cycle`; returns the fault it sets, 0 for none.
+    /// The receiver's result in `cycle`; returns the fault that it sets, 0 for none.
     ///
-    /// Reading: a framing error has a delivered byte's place in the order, after the gap timer; so in the cycle d +
+    /// Reading: a framing error has the same place in the order as a delivered byte, after the gap timer. So in cycle d +
     /// 45*B + 1 a partial packet is SHORT_PACKET first, and then the error is FRAMING.
     pub(super) fn hear(
         &mut self,
@@ -68,19 +68,19 @@ impl Packets {
     }
 }
 
-/// Judges a whole packet committed in cycle `p`; returns the fault it sets, 0 for none.
+/// Checks a complete packet committed in cycle `p`; returns the fault that it sets, 0 for none.
 fn commit(config: &Config, packet: &[u8], p: u64, device: &mut Sequencer) -> u16 {
     let orders = match config.address {
         None => packet,
         Some(own) if packet[0] == own || packet[0] == 255 => &packet[1..],
         Some(_) => return 0,
     };
-    // Reading: "One with p < boot is dropped without a fault" holds whatever is in it, so boot is judged
+    // Reading: "One with p < boot is dropped without a fault" applies to any contents, so boot is checked
     // first.
     if p < config.boot {
         return 0;
     }
-    // "dropped whole (fault TOO_MANY_STEPS, and no other)": judged before the queue.
+    // "dropped whole (fault TOO_MANY_STEPS, and no other)": checked before the queue.
     if too_many_steps(config, orders) {
         return TOO_MANY_STEPS;
     }

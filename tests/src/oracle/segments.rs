@@ -1,4 +1,4 @@
-//! A8: the segment engine, one a channel. "A configuration uses either the tick path (A4..A7) or segments; with
+//! A8: the segment engine, one per channel. "A configuration uses either the tick path (A4..A7) or segments; with
 //! segments EN = RX = TX = 1 and DE = 0 throughout."
 
 use super::controller::Recorder;
@@ -7,33 +7,33 @@ use super::{Config, Run, bits};
 /// One entry of a channel's list; `interval`, `add` and a dwell are in 1/65536 cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Segment {
-    /// `steps` steps, the first `interval` after what came before, each next interval `add` longer.
+    /// `steps` steps, the first `interval` after the previous event, each next interval `add` longer.
     Steps {
         /// At least 1.
         steps: u32,
         /// 48.16 fixed point, cycles.
         interval: u64,
-        /// 48.16 fixed point, cycles a step.
+        /// 48.16 fixed point, cycles per step.
         add: i64,
         /// DIR during these steps.
         dir: bool,
     },
-    /// Nothing for so long; 0 is allowed, also last.
+    /// A pause of this length; 0 is allowed, also at the end.
     Dwell(u64),
 }
 
-/// Where a list is refused, and why.
+/// The reason and the location of a refusal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Refused {
-    /// The channel whose list it is.
+    /// The channel of the list.
     pub channel: usize,
-    /// The index in that list; `None` where the start cycle is at fault.
+    /// The index in that list; `None` if the start cycle is invalid.
     pub segment: Option<usize>,
     /// The rule that is broken.
     pub rule: Rule,
 }
 
-/// The rules by which a list is refused.
+/// The rules for lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
     /// "start_cycle >= 1".
@@ -48,21 +48,21 @@ pub enum Rule {
     NextLeavesU64,
 }
 
-/// What one channel's list orders.
+/// The results of a channel's list.
 #[derive(Default)]
 struct Ordered {
     /// The cycles in which STEP rises.
     rises: Vec<u64>,
-    /// From this cycle on DIR has this level.
+    /// From this cycle on, DIR has this level.
     dir_changes: Vec<(u64, bool)>,
 }
 
-/// Runs a list (start cycle, segments) for each channel from 0 on; channels beyond `lists` rest. Judged whole, also
-/// beyond the run's end, in ascending channel and segment. A list costs as many turns as it has steps.
+/// Runs a list (start cycle, segments) per channel from 0 on; channels beyond `lists` are idle. The whole list is
+/// validated, also beyond the run's end, in ascending channel and segment. Work is proportional to the number of steps.
 ///
-/// Reading: A4's and A7's rules of refusal are the tick path's; of the configuration a segment list needs `channels` and
-/// W, D, H only, W >= 1, and a channel has its own DIR whatever `common_dir` says.
-/// What A6 and A7 add to a [`Run`] is left at its default.
+/// Reading: A4's and A7's rules apply to the tick path. For segments only `channels` and W, D, H of the configuration
+/// matter, W >= 1, and each channel has its own DIR regardless of `common_dir`.
+/// Fields of a [`Run`] from A6 and A7 keep their defaults.
 pub fn run_segments(config: &Config, lists: &[(u64, Vec<Segment>)], cycles: u64) -> Result<Run, Refused> {
     assert!(config.pulse_width >= 1 && lists.len() <= config.channels && config.channels <= 16, "{config:?}");
     let mut levels = vec![1 << bits::EN | 1 << bits::RX | 1 << bits::TX; cycles as usize];
@@ -98,8 +98,8 @@ fn lay_out(config: &Config, start_cycle: u64, list: &[Segment]) -> Result<Ordere
     if start_cycle < 1 {
         return Err((None, Rule::StartBeforeCycle1));
     }
-    // "at the start start_cycle << 16". Reading: a start cycle whose shift leaves u64 is refused like any `next` that
-    // does, with no segment to name, also where the list is empty.
+    // "at the start start_cycle << 16". Reading: a start cycle that exceeds u64 when shifted is refused like any `next`
+    // that does, without a segment, also if the list is empty.
     let mut next = u64::try_from(u128::from(start_cycle) << 16).map_err(|_| (None, Rule::NextLeavesU64))?;
     let mut ordered = Ordered::default();
     let mut dir_so_far = false;
@@ -119,7 +119,7 @@ fn lay_out(config: &Config, start_cycle: u64, list: &[Segment]) -> Result<Ordere
                 }
                 let mut interval = i128::from(interval);
                 for _ in 0..steps {
-                    // Only "an interval that a step uses": what the last addition gives is nobody's.
+                    // Only "an interval that a step uses": the interval after the last step is unused.
                     let used = u64::try_from(interval).map_err(|_| refused(Rule::IntervalLeavesU64))?;
                     if u128::from(used) < least {
                         return Err(refused(Rule::ShortInterval));

@@ -17,10 +17,10 @@ pub fn fires(config: &Config, count: u64, k: u64) -> bool {
 /// The queue and the tick that runs.
 #[derive(Default)]
 pub(super) struct Sequencer {
-    /// Each place of the queue holds a tick's orders, byte i for channel i.
+    /// Each place of the queue has a tick's commands, byte i for channel i.
     queue: VecDeque<Vec<u8>>,
     running: Option<Tick>,
-    /// DIR, a bit a channel.
+    /// DIR, one bit per channel.
     pub(super) dir: u64,
     pub(super) ticks_done: u32,
 }
@@ -51,7 +51,7 @@ impl Sequencer {
         counted && self.running.is_none()
     }
 
-    /// STEP in `cycle`, a bit a channel.
+    /// STEP in `cycle`, one bit per channel.
     pub(super) fn step(&self, cycle: u64) -> u64 {
         let mut step = 0;
         if let Some(tick) = &self.running {
@@ -69,12 +69,12 @@ impl Sequencer {
         self.running.is_some() || !self.queue.is_empty()
     }
 
-    /// Free places in the queue.
+    /// Free places of the queue.
     pub(super) fn free(&self, config: &Config) -> usize {
         config.queue_depth - self.queue.len()
     }
 
-    /// Takes a place; the caller has seen that one is free.
+    /// Takes a place; the caller has checked that one is free.
     pub(super) fn queue(&mut self, orders: &[u8]) {
         self.queue.push_back(orders.to_vec());
     }
@@ -93,14 +93,14 @@ struct Pulse {
     fall: u64,
 }
 
-/// From `cycle` on, DIR of `channels` (a bit each) has `level`.
+/// From `cycle` on, DIR of `channels` (one bit each) has `level`.
 struct DirChange {
     cycle: u64,
     channels: u64,
     level: bool,
 }
 
-/// A tick that has started: all of its pulses and DIR changes, its end e, and whether some count of it is above 0.
+/// A started tick: all its pulses and DIR changes, its end e, and whether one of its counts is above 0.
 struct Tick {
     end: u64,
     counted: bool,
@@ -108,7 +108,7 @@ struct Tick {
     dir_changes: Vec<DirChange>,
 }
 
-/// Lays out the tick that `orders` (byte i for channel i) give, started at `c0` (A7).
+/// Computes the tick of `orders` (byte i for channel i), started at `c0` (A7).
 fn start_tick(config: &Config, orders: &[u8], c0: u64) -> Tick {
     let (width, setup, hold) = (config.pulse_width, config.dir_setup, config.dir_hold);
     let right = |channel: usize| orders[channel] >> 7 == 1;
@@ -171,7 +171,7 @@ fn start_tick(config: &Config, orders: &[u8], c0: u64) -> Tick {
             }
         }
         for (channel, rise) in rises {
-            // A7's refusal rules give every pulse room in its own slot.
+            // By A7's rules every pulse fits into its slot.
             assert!(rise + width <= s + config.step_period, "a pulse leaves its slot: {config:?}");
             tick.pulses.push(Pulse { channel, rise, fall: rise + width });
         }

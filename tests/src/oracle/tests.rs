@@ -1,6 +1,6 @@
-//! The oracle against numbers worked out by hand, a table for each rule of A4, A5, A7 and A9.
+//! Tests of the model with numbers computed by hand, one table per rule of A4, A5, A7 and A9.
 //!
-//! The base configuration divides evenly so that the numbers stay readable: B = 16, a byte is 160 cycles
+//! The basic configuration has simple numbers: B = 16, a byte is 160 cycles
 //! and is delivered 8 + 9*16 = 152 cycles after its start; the gap is 45*16 = 720. A tick is 4 slots of 10
 //! cycles.
 
@@ -38,7 +38,7 @@ fn base() -> Config {
     }
 }
 
-/// Sends only, nothing forced.
+/// Sends only, without forced levels.
 fn sent(sends: &[(u64, &[u8])], cycles: u64) -> Input {
     Input {
         sends: sends.iter().map(|(start, bytes)| (*start, bytes.to_vec())).collect(),
@@ -67,7 +67,7 @@ fn steps(run: &Run, channel: u32) -> Vec<u64> {
     rises(run, bits::STEP + channel)
 }
 
-/// The levels of one signal, a cycle each.
+/// The levels of one signal, one per cycle.
 fn levels(run: &Run, bit: u32, cycles: u64) -> Vec<bool> {
     let mut levels = Vec::new();
     for (index, (from, record)) in run.trace.iter().enumerate() {
@@ -77,7 +77,7 @@ fn levels(run: &Run, bit: u32, cycles: u64) -> Vec<bool> {
     levels
 }
 
-/// The bytes that a controller's TX says.
+/// The bytes on a controller's TX.
 fn said(config: &Config, run: &Run, cycles: u64) -> Vec<u8> {
     hear(config, &levels(run, bits::TX, cycles))
         .into_iter()

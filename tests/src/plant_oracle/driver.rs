@@ -1,22 +1,22 @@
-//! F4: the translator, and what voltage a driver gives each phase.
+//! F4: the translator, and the voltage of each phase.
 
 use super::numbers::{nearest, sincos};
 use super::parameters::{Decay, Drive, Motor, Regulator};
 
-/// A phase of the chopper: on, or off for so many points.
+/// A chopper's phase: on or off, for a number of points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Chopper {
     on: bool,
     count: u64,
-    /// Off and fast, as decided at the last point.
+    /// Off with fast decay, as decided at the last point.
     fast: bool,
-    /// s*i has been <= 0 at a point since going off.
+    /// s*i has been <= 0 at a point since the phase went off.
     reversed: bool,
 }
 
 const BEGIN: Chopper = Chopper { on: true, count: 0, fast: false, reversed: false };
 
-/// What a phase is given in a sub-step.
+/// Result for a phase in a sub-step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Applied {
     /// v, V.
@@ -27,7 +27,7 @@ pub(super) struct Applied {
     pub(super) ends: bool,
 }
 
-/// What the voltage depends on in a sub-step, one phase.
+/// The inputs of the voltage in a sub-step, for one phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Winding {
     pub(super) i: f64,
@@ -64,7 +64,7 @@ impl Driver {
             Decay::Mixed(share) | Decay::Auto(share) => share,
         };
         // Reading: "in nearest whole grid steps (half up)" is floor(us*clock_hz/(1e6*N) + 0.5) in f64; other orders
-        // differ only within rounding of a half.
+        // differ only in the rounding of a half.
         let whole_steps = |us: f64| {
             let steps = (us * clock_hz as f64 / (1e6 * grid_step as f64) + 0.5).floor();
             (steps as u64).max(1)

@@ -1,4 +1,4 @@
-//! What the bus does: A3's records read as changes, and made from A8's segments and from F7's self-test.
+//! The bus: A3's records as changes, and records made from A8's segments and from F7's self-test.
 
 use std::collections::BTreeMap;
 
@@ -12,18 +12,18 @@ pub const RESET: u64 = 1 << 32 | 1 << 33 | 1 << 34;
 /// One entry of a channel's list (A8); `interval`, `add` and `dwell` are in 1/65536 cycle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Segment {
-    /// `steps` steps, the first `interval` after what came before, each next interval `add` longer.
+    /// `steps` steps, the first `interval` after the previous event, each next interval `add` longer.
     Steps {
         /// At least 1.
         steps: u32,
         /// 48.16 cycles.
         interval: u64,
-        /// 48.16 cycles a step.
+        /// 48.16 cycles per step.
         add: i64,
         /// DIR during these steps.
         dir: bool,
     },
-    /// Nothing for so long.
+    /// A pause of this length.
     Dwell(u64),
 }
 
@@ -34,7 +34,7 @@ impl Segment {
     }
 }
 
-/// A cycle in which something that the plant knows changes.
+/// A cycle with a change that affects the plant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Change {
     pub(super) cycle: u64,
@@ -78,7 +78,7 @@ pub(super) fn enable_rises(changes: &[Change], starts_enabled: bool) -> Vec<u64>
     rises
 }
 
-/// Levels that change, gathered in any order.
+/// Changes of levels, in any order.
 #[derive(Debug, Clone, Default)]
 pub struct Bus {
     /// Bits to set and bits to clear in a cycle.
@@ -86,7 +86,7 @@ pub struct Bus {
 }
 
 impl Bus {
-    /// From `cycle` on the bit has this level. In one cycle a later order of the same bit wins.
+    /// From `cycle` on the bit has this level. Within a cycle, the later call for a bit wins.
     pub fn order(&mut self, cycle: u64, bit: u32, level: bool) {
         let (set, clear) = self.orders.entry(cycle).or_default();
         let mask = 1 << bit;
@@ -116,7 +116,7 @@ impl Bus {
     }
 }
 
-/// A8: a list (start cycle, segments) for each channel from 0 on. The lists must be acceptable; D and H are 0.
+/// A8: a list (start cycle, segments) per channel from 0 on. The lists must be valid; D and H are 0.
 pub fn segment_bus(lists: &[(u64, Vec<Segment>)], width: u64) -> Bus {
     let mut bus = Bus::default();
     for (channel, (start_cycle, list)) in lists.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! F8's energies of a motor, added up sub-step by sub-step.
+//! F8's energies of a motor, summed over its sub-steps.
 
 /// Energies of one motor since cycle 0, J.
 ///
-/// Reading: F8 names the sides but not what belongs to each. `load` is the work done against gravity, sine and load
-/// torque; `friction` has the coupling's damper and the rotor's own Coulomb friction; `stored` is what kinetic,
-/// magnetic, spring and detent energy have grown by.
+/// Reading: F8 names the sides of the balance but not their parts. `load` is the work against gravity, sine and load
+/// torque; `friction` includes the coupling's damper and the rotor's own Coulomb friction; `stored` is the growth of
+/// kinetic, magnetic, spring and detent energy.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Ledger {
     /// From the bus.
@@ -24,7 +24,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// What the balance misses, as a share of all that was moved.
+    /// The error of the balance, relative to the energy moved.
     pub fn imbalance(&self) -> f64 {
         let told = self.copper + self.friction + self.viscous + self.diodes + self.load + self.stored;
         let moved = self.bus.abs()

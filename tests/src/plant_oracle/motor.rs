@@ -1,4 +1,4 @@
-//! F3: one motor, one sub-step at a time; F4's rest at cycle 0.
+//! F3: one motor, one sub-step at a time; F4's equilibrium at cycle 0.
 //!
 //! ```text
 //! y = x + w*h/2  ->  k_a, k_b, v, T at y  ->  w' (implicit midpoint)  ->  friction: w1  ->  i, x = y + w1*h/2
@@ -20,7 +20,7 @@ pub(super) struct MotorState {
     pub(super) w: f64,
     /// i_a and i_b, A.
     pub(super) i: [f64; 2],
-    /// Of the load, where there is a coupling.
+    /// State of the load, if there is a coupling.
     pub(super) x_l: f64,
     pub(super) w_l: f64,
     pub(super) ledger: Ledger,
@@ -55,13 +55,13 @@ impl MotorState {
         load
     }
 
-    /// The detent's part of f: 0 where there is none.
+    /// The detent's part of f: 0 without a detent.
     fn detent(&self, sn: f64, cs: f64) -> f64 {
         let d = self.constants.detent;
         if d != 0.0 { d * (2.0 * (2.0 * sn * cs) * (1.0 - 2.0 * sn * sn)) } else { 0.0 }
     }
 
-    /// F(x) of the rest at cycle 0.
+    /// F(x) of the equilibrium at cycle 0.
     fn force(&self, x: f64) -> f64 {
         let k = self.constants.k;
         let (sn, cs) = sincos(x + 0.5);
@@ -85,7 +85,7 @@ impl MotorState {
         middle
     }
 
-    /// Advances by `m` cycles of one (sub-)step and gives the energy from the bus, J.
+    /// Advances by `m` cycles of one (sub-)step and returns the energy from the bus, J.
     pub(super) fn advance(&mut self, m: u64, clock_hz: u64, bus_v: f64, en: bool) -> f64 {
         let c = self.constants;
         let h = m as f64 / clock_hz as f64;

@@ -1,4 +1,4 @@
-//! F3's sine and cosine, its exponential's series, and F6's random numbers: + - * / only, no mathematics library.
+//! F3's sine and cosine, its exponential's series, and F6's random numbers: + - * / only, without a math library.
 
 /// 1.5*2^52: adding and subtracting it rounds to the nearest whole number, ties to even.
 const SHIFT: f64 = 6755399441055744.0;
@@ -44,7 +44,7 @@ pub fn sincos(q: f64) -> (f64, f64) {
         inner = C[k] + z * inner;
     }
     let c = 1.0 + z * inner;
-    // The remainder of two f64 is exact, however great n is.
+    // The remainder of two f64 is exact, even for a large n.
     match (n % 4.0) as i64 {
         1 | -3 => (c, -s),
         2 | -2 => (-s, -c),
@@ -64,7 +64,7 @@ pub(super) fn phi(z: f64) -> (f64, f64) {
     (phi1, phi2)
 }
 
-/// exp(-z), z >= 0, as F6 says it: "z halved to <= 0.25, 1 - z*phi1, squared back".
+/// exp(-z), z >= 0, by F6: "z halved to <= 0.25, 1 - z*phi1, squared back".
 pub(super) fn exp_of_minus(z: f64) -> f64 {
     let mut z = z;
     let mut halvings = 0;

@@ -1,11 +1,11 @@
-//! What a plant is given: F9's fields with their defaults, the existing fields of `motor`, and F2's constants of them.
+//! Parameters of a plant: F9's fields with their defaults, the other fields of `motor`, and F2's constants.
 
 /// The driver of a motor, `motor.drive` (F9).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drive {
-    /// How the current is held at its target.
+    /// How the current is regulated.
     pub regulator: Regulator,
-    /// How fast the bridge lets the current fall.
+    /// How the current decays.
     pub decay: Decay,
     /// The chopper's fixed off-time, us.
     pub off_us: f64,
@@ -62,7 +62,7 @@ pub struct Motor {
     pub rotor_inertia_g_cm2: f64,
     /// g*cm^2.
     pub load_inertia_g_cm2: f64,
-    /// What opposes the motion, mN*m.
+    /// Opposes the motion, mN*m.
     pub load_torque_mn_m: f64,
     /// V; equal for all motors of a plant.
     pub supply_v: f64,
@@ -78,7 +78,7 @@ pub struct Motor {
     pub gravity_torque_mn_m: f64,
     /// Amplitude of a torque that is a sine of the load's angle, mN*m.
     pub sine_torque_mn_m: f64,
-    /// Its periods in a turn.
+    /// Its periods per turn.
     pub sine_per_turn: f64,
     /// Its phase, degrees.
     pub sine_phase_deg: f64,
@@ -101,7 +101,7 @@ pub struct CurrentSensor {
     pub adc_steps: u64,
     /// A.
     pub lsb_a: f64,
-    /// Greatest code, either sign.
+    /// Maximum code of either sign.
     pub adc_max: u32,
 }
 
@@ -125,11 +125,11 @@ pub struct Encoder {
 pub struct Protection {
     /// A.
     pub threshold_a: f64,
-    /// ADC values in a row.
+    /// Consecutive ADC values.
     pub samples: u32,
 }
 
-/// What all motors share, `plant` (F9).
+/// Common parameters of all motors, `plant` (F9).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plant {
     /// N; `None`: by F1.
@@ -138,11 +138,11 @@ pub struct Plant {
     pub source_ohm: f64,
     /// Cb, uF; `None`: the bus is the supply.
     pub buffer_uf: Option<f64>,
-    /// Whether the source takes current back.
+    /// Whether the source accepts reverse current.
     pub source_sinks: bool,
     /// Of each driver, mA.
     pub idle_ma: f64,
-    /// The supply current's sensor.
+    /// The sensor of the supply current.
     pub current_sensor: CurrentSensor,
     /// The encoders.
     pub encoder: Encoder,
@@ -155,9 +155,9 @@ pub struct Plant {
 pub struct Case {
     /// Cycles in a second.
     pub clock_hz: u64,
-    /// What all motors share.
+    /// Common parameters of all motors.
     pub plant: Plant,
-    /// The motor of channel 0, 1, ...; `None`: that channel has none.
+    /// The motors of channels 0, 1, ...; `None`: no motor.
     pub motors: Vec<Option<Motor>>,
     /// A3's records (cycle, levels), the first at cycle 0.
     pub records: Vec<(u64, u64)>,
@@ -237,7 +237,7 @@ impl Default for Plant {
 
 /// N (F1), cycles: `step_cycles`, or its default.
 ///
-/// Reading: "where a driver chops" is where at least one motor's regulator is the chopper; the grid is common to all.
+/// Reading: "where a driver chops" means that at least one motor has a chopper; the grid is common to all.
 pub fn grid_step(case: &Case) -> u64 {
     let chops = case.motors.iter().flatten().any(|motor| motor.drive.regulator == Regulator::Chopper);
     let rate = if chops { 1_000_000 } else { 200_000 };
@@ -247,7 +247,7 @@ pub fn grid_step(case: &Case) -> u64 {
 /// F2's constants of a motor, in full steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorConstants {
-    /// g, rad a full step.
+    /// g, rad per full step.
     pub g: f64,
     /// R, ohm.
     pub r: f64,
@@ -255,7 +255,7 @@ pub struct MotorConstants {
     pub l: f64,
     /// K.
     pub k: f64,
-    /// M: of the rotor and the load, with a coupling the rotor's own.
+    /// M: of rotor and load; with a coupling of the rotor only.
     pub m: f64,
     /// B.
     pub b: f64,
@@ -273,7 +273,7 @@ pub struct MotorConstants {
     pub load: f64,
     /// I, the peak current, A.
     pub peak: f64,
-    /// sine_per_turn*full_step_deg/90: quarter turns of the sine's phase a full step.
+    /// sine_per_turn*full_step_deg/90: quarter turns of the sine's phase per full step.
     pub sine_rate: f64,
     /// sine_phase_deg/90.
     pub sine_start: f64,

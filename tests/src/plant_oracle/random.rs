@@ -1,7 +1,7 @@
-//! Random cases for property tests: motors, drivers, supplies, sensors and edges, from a seed, the same on every target.
+//! Random cases for property tests from a seed: motors, drivers, supplies, sensors and edges, equal on every target.
 //!
-//! What is drawn is broad within F9's ranges, and where F9's range is so wide that nothing would happen in a run,
-//! around what drives have. Runs are short: some hundred to some thousand grid points for each motor.
+//! Values are spread over F9's ranges. Where a range is too wide for an effect within a run, values are near those of
+//! real drives. Runs are short: some hundred to some thousand grid points per motor.
 
 use super::edges::{Bus, DIR, EN};
 use super::numbers::SplitMix64;
@@ -13,7 +13,7 @@ use super::refusals::is_refused;
 /// Grid points times motors of a drawn case, at most.
 const MOTOR_STEPS: u64 = 24_000;
 
-/// A case that the contract does not refuse: the first such of those drawn from the seed.
+/// A valid case: the first one drawn from the seed.
 pub fn random_case(seed: u64) -> Case {
     let mut dice = Dice(SplitMix64(seed));
     loop {
@@ -24,7 +24,7 @@ pub fn random_case(seed: u64) -> Case {
     }
 }
 
-/// The first case drawn from the seed, refused or not.
+/// The first case drawn from the seed, valid or not.
 pub fn drawn_case(seed: u64) -> Case {
     Dice(SplitMix64(seed)).case()
 }
@@ -49,7 +49,7 @@ impl Dice {
         least + (most - least) * self.0.unit()
     }
 
-    /// As likely in one decade as in another: so many doublings of `least`, then a part of one.
+    /// Equally likely in each decade: a number of doublings of `least`, then a part of one.
     fn decades(&mut self, least: f64, most: f64) -> f64 {
         let mut doublings = 0;
         while least * (2u64 << doublings) as f64 <= most {
@@ -59,7 +59,7 @@ impl Dice {
         value * self.between(1.0, if value * 2.0 <= most { 2.0 } else { most / value })
     }
 
-    /// 0, mostly; else by decades.
+    /// Mostly 0; otherwise spread over decades.
     fn seldom(&mut self, percent: u64, least: f64, most: f64) -> f64 {
         if self.chance(percent) { self.decades(least, most) } else { 0.0 }
     }
@@ -86,7 +86,7 @@ impl Dice {
         let mut motors: Vec<Option<Motor>> = Vec::new();
         for _ in 0..places {
             let there = !self.chance(8);
-            // Equal motors side by side are usual, too.
+            // Equal motors are common.
             let again = motors.last().cloned().flatten().filter(|_| self.chance(30));
             let motor = again.unwrap_or_else(|| self.motor(supply_v, chopped));
             motors.push(there.then_some(motor));
@@ -114,7 +114,7 @@ impl Dice {
         let friction_mn_m = if self.chance(20) { 0.0 } else { self.between(0.0, 0.1 * holding_torque_mn_m) };
         let inertia = self.decades(1.0, 2000.0);
         let load_inertia = if self.chance(50) { self.decades(1.0, 5000.0) } else { 0.0 };
-        // A spring that the grid can follow more often than not: against the lighter mass at 50 to 3000 rad/s.
+        // A spring that the grid can mostly follow: against the lighter mass at 50 to 3000 rad/s.
         let natural = self.decades(50.0, 3000.0);
         let coupling_n_m_rad = (load_inertia > 0.0 && self.chance(60))
             .then(|| (load_inertia.min(inertia) * 1e-7 * natural * natural).max(0.001));
@@ -164,7 +164,7 @@ impl Dice {
     fn drive(&mut self, chopped: bool) -> Drive {
         let share = if self.chance(80) { self.0.unit() } else { self.pick(&[0.0, 1.0]) };
         Drive {
-            // Both regulators side by side, too.
+            // Both regulators in one plant, too.
             regulator: if chopped && self.chance(80) { Regulator::Chopper } else { Regulator::Averaged },
             decay: self.pick(&[Decay::Slow, Decay::Fast, Decay::Mixed(share), Decay::Auto(share)]),
             off_us: if self.chance(30) { 20.0 } else { self.decades(1.0, 60.0) },
@@ -177,7 +177,7 @@ impl Dice {
 
     fn plant(&mut self) -> Plant {
         let usual = Plant::default();
-        // One in eight has a bus that a step can pull down to its floor.
+        // One in eight has a bus whose voltage a step can reduce to its minimum.
         let weak = self.chance(12);
         Plant {
             source_ohm: self.decades(if weak { 1.0 } else { 0.01 }, if weak { 100.0 } else { 4.0 }),
@@ -210,7 +210,7 @@ impl Dice {
         }
     }
 
-    /// Pulses of each channel, and EN that drops and rises. In one cycle EN never rises with a STEP.
+    /// Pulses of each channel, and changes of EN. EN never rises in the cycle of a STEP.
     fn records(&mut self, case: &Case, n_cycles: u64) -> Vec<(u64, u64)> {
         let mut bus = Bus::default();
         let mut rises = Vec::new();
@@ -238,7 +238,7 @@ impl Dice {
         bus.records(case.cycles)
     }
 
-    /// One channel: stretches of an even, a rising or a random rate, with pauses, in either direction.
+    /// One channel: parts with a constant, a rising or a random rate, with pauses, in either direction.
     fn pulses(
         &mut self,
         bus: &mut Bus,
@@ -247,7 +247,7 @@ impl Dice {
         cycles: u64,
         n_cycles: u64,
     ) {
-        // Around what a stretch runs: a part of a grid step to some hundred of them.
+        // From a part of a grid step to some hundred of them.
         let grid_steps = if self.chance(35) {
             self.decades(0.3, 600.0)
         } else {
@@ -272,7 +272,7 @@ impl Dice {
                     return;
                 }
                 if step == 0 && turned {
-                    // DIR in the very cycle of the rise, or up to two before.
+                    // DIR in the cycle of the rise, or up to two cycles earlier.
                     bus.order(rise - dir_ahead, DIR + channel as u32, right);
                 }
                 bus.pulse(channel, rise, width);

@@ -1,9 +1,9 @@
-//! What F3, F4, F5 and F9 refuse before a run.
+//! Cases that F3, F4, F5 and F9 refuse before a run.
 
 use super::parameters::{Case, Motor, MotorConstants, grid_step};
 use super::run::start_voltage;
 
-/// Why a case has no run; the numbers are those that are judged.
+/// Why a case has no run, with the rejected numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
     /// R*h/L above 0.25 (F3).
@@ -14,7 +14,7 @@ pub enum Refusal {
     CouplingSpring(f64),
     /// h*Cd*(1/M + 1/M_l) above 0.25 (F3).
     CouplingDamper(f64),
-    /// V at cycle 0 is no number (F5).
+    /// V at cycle 0 is NaN (F5).
     StartVoltage,
     /// Motors of one plant with different supplies (F9).
     Supplies(f64, f64),
@@ -22,7 +22,7 @@ pub enum Refusal {
     Torque,
 }
 
-/// F3's and F5's limits, and F9's rules between fields; ranges of single fields are not judged.
+/// F3's and F5's limits, and F9's rules between fields; the ranges of single fields are not checked.
 pub fn is_refused(case: &Case) -> Option<Refusal> {
     let h = grid_step(case) as f64 / case.clock_hz as f64;
     let supply_v = case.motors.iter().flatten().next()?.supply_v;
@@ -41,7 +41,7 @@ pub fn is_refused(case: &Case) -> Option<Refusal> {
 }
 
 fn motor_refused(motor: &Motor, h: f64) -> Option<Refusal> {
-    // What is no number is above any limit, too: a rotor without inertia.
+    // NaN exceeds any limit, too: a rotor without inertia.
     let above = |number: f64| number.is_nan() || number > 0.25;
     if motor.stiction_mn_m.is_some_and(|stiction| stiction < motor.friction_mn_m)
         || motor.detent_torque_mn_m > motor.holding_torque_mn_m / 2.0

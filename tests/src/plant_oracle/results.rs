@@ -1,27 +1,27 @@
-//! F8: what is read off a series of samples (cycle, value), and off the end of a move.
+//! F8: results from a series of samples (cycle, value), and from the end of a move.
 
 use super::run::Run;
 
-/// One step of a motor at rest, seen by a sensor.
+/// One step of a motor at standstill, measured by a sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepSeen {
-    /// Mean over the ten T_step before.
+    /// Mean of the previous ten T_step.
     pub i_q: f64,
-    /// Least i - i_q in the T_step after.
+    /// Minimum of i - i_q in the T_step after it.
     pub least: f64,
-    /// Greatest i - i_q there.
+    /// Maximum of i - i_q there.
     pub greatest: f64,
-    /// delta t_p, the patent's, cycles from the rise.
+    /// delta t_p by the patent, in cycles from the rise.
     pub reached: Option<u64>,
-    /// delta t_p, settled, cycles from the rise.
+    /// delta t_p until settled, in cycles from the rise.
     pub settled: Option<u64>,
 }
 
 /// Both delta t_p of the step that rises in `rise`, from samples (cycle, value); `None` without samples on both sides.
 ///
 /// Reading: the samples are those in (rise - 10*T_step, rise] and (rise, rise + T_step], as F7 has them; a sample in
-/// the cycle of the rise is one before it. Of equal greatest the first is t_max. `settled` is none where the last sample
-/// in the window is still away, and where none is.
+/// the cycle of the rise is before it. Of equal maxima the first is t_max. `settled` is `None` if the last sample
+/// in the window is outside of the tolerance, or if there is none.
 pub fn step_seen(series: &[(u64, f64)], rise: u64, t_step: u64, share: f64) -> Option<StepSeen> {
     let from = rise.saturating_sub(10 * t_step);
     let before: Vec<f64> =
@@ -57,7 +57,7 @@ pub fn step_seen(series: &[(u64, f64)], rise: u64, t_step: u64, share: f64) -> O
     Some(StepSeen { i_q, least, greatest, reached: reached.map(|&(at, _)| at - rise), settled })
 }
 
-/// Greatest deviations from `i_q` from a cycle on: of either sign, positive, negative (as a number below 0).
+/// Maximum deviations from `i_q` from a cycle on: of either sign, positive, negative (as a number below 0).
 pub fn peaks(series: &[(u64, f64)], i_q: f64, from: u64) -> (f64, f64, f64) {
     let mut peaks = (0.0f64, 0.0f64, 0.0f64);
     for &(_, value) in series.iter().filter(|&&(at, _)| at >= from) {
@@ -70,9 +70,9 @@ pub fn peaks(series: &[(u64, f64)], i_q: f64, from: u64) -> (f64, f64, f64) {
 /// The end of a move, at grid points after its last STEP.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MoveEnd {
-    /// Greatest x - final command in the move's direction, full steps.
+    /// Maximum of x - final command in the move's direction, full steps.
     pub overshoot: f64,
-    /// Last cycle with |x - final x| > 0.05, from the last STEP's rise; 0 where there is none.
+    /// Last cycle with |x - final x| > 0.05, from the last STEP's rise; 0 without one.
     pub settling_cycles: u64,
     /// u/microsteps - x at the last point.
     pub rest_error: f64,

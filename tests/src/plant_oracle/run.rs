@@ -1,4 +1,4 @@
-//! F1's time: grid points, the sub-steps between them, and all that is told of a run.
+//! F1's time: grid points, the sub-steps between them, and all results of a run.
 //!
 //! ```text
 //! point n: sensors, lost steps, digest | chopper decides | changes in cycle n*N act | sub-steps | V, i_load of point n + 1
@@ -25,15 +25,15 @@ pub struct MotorPoint {
     pub i_a: f64,
     /// A.
     pub i_b: f64,
-    /// Load, full steps; the rotor's where there is no coupling.
+    /// Load, full steps; the rotor's without a coupling.
     pub x_l: f64,
     /// Load, full steps/s.
     pub w_l: f64,
-    /// Microsteps commanded, without a STEP that rises in this very cycle.
+    /// Commanded microsteps, without a STEP that rises in this cycle.
     pub u: i64,
-    /// Accelerometer of the load over the grid step that ends here, behind its low pass, rad/s^2; 0 at point 0.
+    /// Acceleration of the load over the grid step that ends here, after its low pass, rad/s^2; 0 at point 0.
     pub sensed_rad_s2: f64,
-    /// Full steps lost so far: four a slip.
+    /// Full steps lost so far: four per slip.
     pub lost: i64,
 }
 
@@ -42,13 +42,13 @@ pub struct MotorPoint {
 pub struct Point {
     /// n*N.
     pub cycle: u64,
-    /// EN, without a change in this very cycle.
+    /// EN, without a change in this cycle.
     pub en: bool,
     /// V.
     pub v: f64,
     /// i_load of the grid step that ends here, A; at point 0 the steady P/V + idle.
     pub i_load: f64,
-    /// i_load behind the sensor's low passes, A.
+    /// i_load after the sensor's low passes, A.
     pub sensed_a: f64,
     /// The motors in ascending channel.
     pub motors: Vec<MotorPoint>,
@@ -57,13 +57,13 @@ pub struct Point {
 /// "lost += 1" or "lost -= 1": four full steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LostStep {
-    /// The grid point's.
+    /// Cycle of the grid point.
     pub cycle: u64,
-    /// +1: the rotor stays behind to the right's command; -1: to the left's.
+    /// +1: the rotor is left of the command; -1: right of it.
     pub sign: i64,
 }
 
-/// What a run of the plant leaves behind; lists of motors are in ascending channel.
+/// Results of a run of the plant; lists of motors are in ascending channel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// N, cycles.
@@ -80,7 +80,7 @@ pub struct Run {
     pub lost: Vec<Vec<LostStep>>,
     /// Energies of each motor.
     pub energies: Vec<Ledger>,
-    /// The first cycle in which `protection` gives OVERLOAD, with these very edges.
+    /// The first cycle in which `protection` reports OVERLOAD, with these edges.
     pub overload: Option<u64>,
 }
 
@@ -128,7 +128,7 @@ impl Mounted {
         self.slips.push(LostStep { cycle, sign });
     }
 
-    /// Through one grid step; gives the energy from the bus.
+    /// Advances by one grid step; returns the energy from the bus.
     fn advance(
         &mut self,
         from: u64,
@@ -142,7 +142,7 @@ impl Mounted {
         energy + self.state.advance(to - at, clock_hz, bus_v, en)
     }
 
-    /// Up to the last change that concerns the motor: its cycle, EN from there on, and the energy from the bus.
+    /// Advances to the last change that affects the motor: its cycle, EN from there on, and the energy from the bus.
     fn advance_through(
         &mut self,
         from: u64,
@@ -166,7 +166,7 @@ impl Mounted {
                 self.state.driver.step(change.dirs >> self.channel & 1 == 1);
             }
             if change.en && !en {
-                // Reading: u with a STEP that rises in the same cycle, as both act from this cycle on.
+                // Reading: u includes a STEP that rises in the same cycle, because both take effect from this cycle on.
                 self.state.driver.enabled();
                 self.lost = nearest(self.error() / 4.0) as i64;
             }
@@ -191,7 +191,7 @@ impl Mounted {
     }
 }
 
-/// Runs a case, which must not be refused.
+/// Runs a valid case.
 pub fn run(case: &Case) -> Run {
     assert_eq!(is_refused(case), None, "a refused case has no run");
     let n_cycles = grid_step(case);
@@ -206,7 +206,7 @@ pub fn run(case: &Case) -> Run {
 
     let changes = changes(&case.records);
     let mut en = starts_enabled(&case.records);
-    // Reading: EN rises in p + 1 where ENABLE comes in p, and the protection looks last in p. So the count begins anew
+    // Reading: EN rises in p + 1 if ENABLE comes in p, and the protection is the last step of p. So the count restarts
     // before the value of a point in p or later. (An ENABLE while EN = 1 leaves no edge.)
     let enables = enable_rises(&changes, en);
     let mut points: Vec<Point> = Vec::new();
@@ -216,7 +216,7 @@ pub fn run(case: &Case) -> Run {
 
     for n in 0.. {
         let cycle = n * n_cycles;
-        // Point n, with EN and u as before a change in this very cycle.
+        // Point n, with EN and u before any change in this cycle.
         if n > 0 {
             sensor.advance(i_load);
             // Reading: "every adc_steps points" are the points adc_steps, 2*adc_steps, ..., as the encoder's.
@@ -260,7 +260,7 @@ pub fn run(case: &Case) -> Run {
         // "Point n + 1 is known once cycle (n+1)N - 1 is."
         let to = cycle + n_cycles;
         if to > case.cycles {
-            // Clarified: energies also count what was after the last point, up to the last change.
+            // Clarified: energies include those after the last point, up to the last change.
             let rest: Vec<Change> =
                 changes[next_change..].iter().filter(|change| change.cycle <= case.cycles).cloned().collect();
             for motor in &mut motors {
@@ -307,7 +307,7 @@ pub fn run(case: &Case) -> Run {
 fn mount(case: &Case, n_cycles: u64, h: f64) -> Vec<Mounted> {
     let mounted = |(channel, motor): (usize, &Option<Motor>)| {
         let motor = motor.as_ref()?;
-        // Reading: F9 has no fields for the accelerometer, so its low pass and ADC are the current sensor's.
+        // Reading: F9 has no fields for the accelerometer, so it has the low pass and the ADC of the current sensor.
         let low_pass: &CurrentSensor = &case.plant.current_sensor;
         Some(Mounted {
             channel,

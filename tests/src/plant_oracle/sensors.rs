@@ -1,4 +1,4 @@
-//! F6 and F7's eyes: low passes, ADC, encoder, overload protection.
+//! F6 and F7's sensors: low passes, ADC, encoder, overload protection.
 
 use super::numbers::{SplitMix64, exp_of_minus, nearest};
 use super::parameters::{CurrentSensor, Encoder, Protection};
@@ -9,7 +9,7 @@ pub fn low_pass_factor(bandwidth_hz: f64, h: f64) -> f64 {
     1.0 - exp_of_minus(2.0 * std::f64::consts::PI * bandwidth_hz * h)
 }
 
-/// A chain of equal low passes, and the ADC behind it.
+/// A chain of equal low passes with an ADC.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sensor {
     factor: f64,
@@ -31,7 +31,7 @@ impl Sensor {
         }
     }
 
-    /// Takes the input of one grid step. Reading: a pole's input is what the pole before it has become in this step.
+    /// Processes the input of one grid step. Reading: the input of a pole is the new output of the previous pole.
     pub(super) fn advance(&mut self, input: f64) {
         let mut input = input;
         for s in &mut self.poles {
@@ -40,7 +40,7 @@ impl Sensor {
         }
     }
 
-    /// Behind the last pole.
+    /// Output of the last pole.
     pub(super) fn value(&self) -> f64 {
         self.poles[self.poles.len() - 1]
     }
@@ -73,12 +73,12 @@ impl EncoderState {
         Self { encoder: encoder.clone(), turn: full_step_deg / 360.0, out: 0.0, noise }
     }
 
-    /// The code at one of its points. Reading: U is drawn first, then U'; both at each code, also where the noise is 0.
+    /// The code at one of its points. Reading: U is drawn first, then U'; both for each code, even without noise.
     pub(super) fn code(&mut self, x: f64) -> u16 {
         let u = self.noise.unit();
         let u_too = self.noise.unit();
         let value = x * self.turn * 4096.0 + self.encoder.offset_lsb + self.encoder.noise_lsb * (u - u_too);
-        // Reading: the play drags `out` behind: to value - play where the value is above out + play, and likewise below.
+        // Reading: the play moves `out`: to value - play if the value is above out + play, and likewise below.
         let play = self.encoder.hysteresis_lsb;
         if value > self.out + play {
             self.out = value - play;
@@ -94,7 +94,7 @@ impl EncoderState {
 pub(super) struct Watch {
     protection: Protection,
     in_a_row: u32,
-    /// The first cycle in which it gives OVERLOAD.
+    /// The first cycle in which it reports OVERLOAD.
     pub(super) tripped: Option<u64>,
 }
 

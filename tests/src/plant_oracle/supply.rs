@@ -1,4 +1,4 @@
-//! F5: the bus that all drivers share.
+//! F5: the bus that supplies all drivers.
 
 use super::parameters::Plant;
 
@@ -17,7 +17,7 @@ pub(super) struct Supply {
 }
 
 impl Supply {
-    /// At cycle 0, where the windings take `p` watts.
+    /// At cycle 0, with a power of `p` watts in the windings.
     pub(super) fn new(plant: &Plant, supply_v: f64, motors: usize, p: f64) -> Self {
         let idle = plant.idle_ma / 1000.0 * motors as f64;
         let buffer = plant.buffer_uf.map(|uf| uf / 1e6);
@@ -39,7 +39,7 @@ impl Supply {
         sum / (self.v * h) + self.idle
     }
 
-    /// V after that step.
+    /// V after this step.
     pub(super) fn advance(&mut self, i_load: f64, h: f64) {
         let Some(capacitance) = self.buffer else {
             return;

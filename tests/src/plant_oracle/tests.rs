@@ -1,4 +1,4 @@
-//! The oracle against F10's digests and those of its numbers that need the model alone.
+//! Tests of the model: F10's digests, and its numbers that need only the model.
 
 mod digests;
 mod motion;
@@ -11,7 +11,7 @@ use super::*;
 
 const CLOCK: u64 = 16_000_000;
 
-/// `motor` on channel 0 for so many cycles.
+/// `motor` on channel 0 for this number of cycles.
 fn alone(motor: Motor, bus: &Bus, cycles: u64) -> Case {
     of_equals(motor, 1, bus, cycles)
 }
@@ -42,7 +42,7 @@ fn patent_motor() -> Motor {
     }
 }
 
-/// Step k = 0, 1, ... of an even rate rises in 1600 + floor(k*clock_hz/rate + 1/2).
+/// Step k = 0, 1, ... of a constant rate rises in 1600 + floor(k*clock_hz/rate + 1/2).
 fn even_rate(steps: u64, rate: u64) -> (Bus, u64) {
     let mut bus = Bus::default();
     bus.order(1, edges::DIR, true);

@@ -1,4 +1,4 @@
-//! Scenarios of the right types with any numbers in them: most are refused, some are huge.
+//! Scenarios of the right types with any numbers: most are refused, some are huge.
 
 use super::{grouped, segmented};
 use proptest::prelude::*;
@@ -21,8 +21,8 @@ use stepscope_core::{
     },
 };
 
-/// Any scenario of this version that JSON can carry: no number in it is infinite or none at all. The parts are boxed: a
-/// scenario's whole tree does not fit on a test's stack.
+/// Any scenario of this version that JSON can represent, with finite numbers. Its parts are boxed, because a complete
+/// scenario does not fit on a test's stack.
 pub fn typed() -> BoxedStrategy<Scenario> {
     let texts = (text(), text());
     let analysis =
@@ -61,8 +61,8 @@ pub fn typed() -> BoxedStrategy<Scenario> {
         .boxed()
 }
 
-/// Lists of segments before a plant of any numbers, over within 40 000 cycles. Numbers that are mostly refused are put right,
-/// so that about a quarter of them hold.
+/// Lists of segments for a plant of any numbers, at most 40 000 cycles long. Numbers that are mostly refused are corrected,
+/// so that about a quarter of the scenarios are valid.
 pub fn driven() -> BoxedStrategy<Scenario> {
     let factors =
         prop::array::uniform6(prop::sample::select(vec![0.01, 0.1, 0.5, 1.0, 1.0, 2.0, 10.0, 100.0]));
@@ -89,7 +89,7 @@ pub fn driven() -> BoxedStrategy<Scenario> {
         .boxed()
 }
 
-/// The default often, else small numbers, the ends of the type, or any.
+/// Often the default, otherwise small numbers, the ends of the type, or any number.
 pub(super) fn small_or_any<T>(default: T) -> impl Strategy<Value = T> + Clone
 where
     T: Arbitrary + Copy + TryFrom<u64> + 'static,
@@ -101,7 +101,7 @@ where
     prop_oneof![30 => Just(default), 2 => prop::sample::select(odd), 1 => any::<T>()]
 }
 
-/// Any finite number, round and absurd ones often.
+/// Any finite number, often a round or an extreme one.
 pub(super) fn number(default: f64) -> impl Strategy<Value = f64> + Clone {
     let odd = [
         0.0,
@@ -238,7 +238,7 @@ fn source() -> BoxedStrategy<Source> {
         1 => prop::collection::vec(any::<u8>(), 0..40),
     ];
     let hex = hex.prop_map(Hex);
-    // Address, kind and body: every kind there is, and one beside, mostly as it should be.
+    // Address, kind and body: all kinds and an unknown one, mostly valid.
     let body = prop_oneof![3 => Just(Vec::new()), 1 => prop::collection::vec(any::<u8>(), 0..4)];
     let frame = (prop::sample::select(vec![0, 1, 255]), 1..=8_u8, body)
         .prop_map(|(address, kind, body)| Hex([vec![address, kind], body].concat()));
@@ -326,7 +326,7 @@ fn motor() -> BoxedStrategy<Motor> {
         .boxed()
 }
 
-/// What a plant asks of a motor beside its curve.
+/// Additional parameters of a motor in a plant.
 fn in_plant(motor: Motor) -> impl Strategy<Value = Motor> {
     let friction = (number(5.0), prop::option::of(number(8.0)), number(300.0), number(20.0), number(-50.0));
     let load = (number(30.0), number(2.0), number(90.0), prop::option::of(number(20.0)), number(100.0));

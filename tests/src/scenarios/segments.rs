@@ -1,4 +1,4 @@
-//! Scenarios that segments run: lists of some hundred steps, and the motions of the small ones.
+//! Scenarios of segments: lists of some hundred steps, and the motions of the small scenarios.
 
 use super::small;
 use proptest::prelude::*;
@@ -10,7 +10,7 @@ use stepscope_core::{
     },
 };
 
-/// Lists, and motions that are run by an exact list; nearly all run.
+/// Lists, and motions with an exact list; nearly all are valid.
 pub fn segmented() -> impl Strategy<Value = Scenario> {
     let motion = small().prop_filter_map("is a motion", |mut scenario| match &mut scenario.source {
         Source::Motion(motion) => {
@@ -48,7 +48,7 @@ fn list(least: u64) -> impl Strategy<Value = ChannelSegments> {
     let add = prop_oneof![Just(0), -0x4_0000..0x4_0000_i64];
     let steps =
         (1..=9_u32, 0..0x20_0000_u64, add, any::<bool>()).prop_map(move |(count, spare, add_q16, right)| {
-            // A shrinking interval is still long enough at the end.
+            // A shrinking interval is still long enough at its end.
             let room = if add_q16 < 0 { u64::from(count - 1) * add_q16.unsigned_abs() } else { 0 };
             let (interval_q16, direction) = (least + spare + room, Direction::of_dir(right));
             Segment::Steps(StepSegment { count, interval_q16, add_q16, direction })

@@ -1,5 +1,5 @@
-//! Scenarios of one to four controllers on a line, raw and framed, with and without noise: small
-//! enough that every cycle can be visited.
+//! Scenarios of one to four controllers on a line, raw and framed, with and without noise: short
+//! enough to run every cycle.
 
 use super::small;
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ use stepscope_core::{
     scenario::{Controller, Hex, Host, Noise, Scenario, ScriptedSend, Source},
 };
 
-/// Scenarios of which nearly all run, for some ten thousand cycles to some hundred thousand.
+/// Nearly all scenarios are valid, and run for some ten thousand to some hundred thousand cycles.
 pub fn shared() -> impl Strategy<Value = Scenario> {
     let one = (any::<u8>(), prop::option::weighted(0.3, 970..1_030_u32), share());
     let additional = prop::collection::vec(one, 0..4);
@@ -22,8 +22,8 @@ pub fn shared() -> impl Strategy<Value = Scenario> {
             scenario.line.noise = noise;
             scenario.line.host = host;
             scenario.line.protocol = protocol;
-            // A faster clock and line under ticks of the same time: there is room for the packets of all,
-            // or for a frame's share.
+            // A faster clock and line with ticks of the same time: there is space for the packets of all,
+            // or for parts of frames.
             let faster = if framed { 20 } else { 2 } * (1 + additional.len() as u32);
             scenario.clock_hz *= faster;
             scenario.line.baud *= faster;
@@ -65,12 +65,12 @@ fn other_address(first: u8, index: usize) -> u8 {
     ((usize::from(first) + 1 + index) % 255) as u8
 }
 
-/// Quarters of the first controller's orders that another one has: as many mostly, or it is done earlier, or has none.
+/// Number of another controller's commands, in quarters of the first one's: mostly equal, otherwise fewer or none.
 fn share() -> impl Strategy<Value = usize> {
     prop_oneof![2 => Just(4_usize), 3 => 0..4_usize]
 }
 
-/// What an additional controller does, on its own channels: as much as the first, or some quarters of it.
+/// The source of an additional controller, on its own channels: equal to the first one's, or some quarters of it.
 fn orders(scenario: &Scenario, index: u8, channels: u8, share: usize) -> (Vec<Axis>, Vec<Hex>) {
     let address = other_address(scenario.line.address.unwrap_or(0), index.into());
     match &scenario.source {
@@ -99,7 +99,7 @@ fn orders(scenario: &Scenario, index: u8, channels: u8, share: usize) -> (Vec<Ax
     }
 }
 
-/// Makes a frame of what was to be sent: a kind by its number, and the bytes as ticks for TICKS.
+/// Makes a frame of the bytes to send: a kind by its number, and the bytes as ticks for TICKS.
 fn seal(send: &mut ScriptedSend, index: usize, address: u8) {
     let Hex(bytes) = std::mem::take(&mut send.bytes);
     let kind = [1, 1, 2, 5, 4, 3, 6, 9].get(index).copied().unwrap_or(4);

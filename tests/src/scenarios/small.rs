@@ -1,4 +1,4 @@
-//! Scenarios that run: slow clocks, short ticks, a few packets, so that every cycle can be visited.
+//! Small valid scenarios: slow clocks, short ticks, a few packets, so that every cycle can be run.
 
 use proptest::prelude::*;
 use stepscope_core::peripheral::wire::schedule::line_time;
@@ -14,7 +14,7 @@ use stepscope_core::{
     scenario::{Glitch, Hex, Line, LineScript, Motion, Packets, Scenario, ScriptedSend, Source},
 };
 
-/// Scenarios of all three sources, of which nearly all run, for some ten thousand cycles.
+/// Scenarios of all three sources, nearly all valid, of some ten thousand cycles.
 pub fn small() -> impl Strategy<Value = Scenario> {
     (peripheral(), prop::option::weighted(0.3, 1..20_000_u64), prop::collection::vec(glitch(), 0..4))
         .prop_flat_map(|(peripheral, run_cycles, glitches)| {
@@ -94,7 +94,7 @@ fn source(peripheral: &Scenario) -> impl Strategy<Value = Source> + use<> {
     ]
 }
 
-/// Bytes that seldom order too many steps; on an addressed line mostly to this controller.
+/// Bytes that rarely exceed the steps of a tick; on an addressed line mostly for this controller.
 fn packet(peripheral: &Scenario) -> impl Strategy<Value = Hex> + use<> {
     let (slots, address) = (peripheral.bus.slots, peripheral.line.address);
     let order = (any::<bool>(), prop_oneof![20 => 0..=slots, 1 => 0..=127_u8]);
@@ -106,7 +106,7 @@ fn packet(peripheral: &Scenario) -> impl Strategy<Value = Hex> + use<> {
     })
 }
 
-/// Packets, whole or cut, and noise, at pauses from none to past a gap.
+/// Complete or truncated packets and noise, with pauses from none to more than a gap.
 fn script(peripheral: &Scenario) -> impl Strategy<Value = Source> + use<> {
     let (clock_hz, baud) = (peripheral.clock_hz, peripheral.line.baud);
     let bytes = prop_oneof![
@@ -126,11 +126,11 @@ fn script(peripheral: &Scenario) -> impl Strategy<Value = Source> + use<> {
     })
 }
 
-/// Up to three moves that fit into the bus's rate and last some ticks each.
+/// Up to three moves within the bus's rate, of some ticks each.
 fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
     let bus = &peripheral.bus;
     let tick_s = f64::from(bus.slots) * f64::from(bus.step_period_cycles) / f64::from(peripheral.clock_hz);
-    // The greatest whole number of steps in a tick is one above the mean rate's.
+    // The maximum number of steps in a tick is one above the mean rate's.
     let rate = (f64::from(bus.slots) - 0.5).max(0.5) / tick_s * 0.8;
     let steps = prop_oneof![-30..=-1_i32, 1..=30_i32].prop_map(f64::from);
     let (part, speed) = (0.2..1.0_f64, Speed::StepsPerSecond);
@@ -189,7 +189,7 @@ fn axis(peripheral: &Scenario) -> impl Strategy<Value = Axis> + use<> {
             })
         }),
         (steps.clone(), steps.clone(), any::<bool>()).prop_map(move |(there, back, smooth)| {
-            // A smooth curve is up to twice as quick as a straight one.
+            // A smooth curve is up to twice as fast as a straight one.
             let time_s = |way: f64| 2.5 * way.abs() / rate;
             let points =
                 [(0.0, 0.0), (time_s(there), there), (time_s(there) + time_s(back - there).max(0.01), back)];

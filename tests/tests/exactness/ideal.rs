@@ -1,13 +1,13 @@
-//! Where a motion ideally is, from the design's own formulas (DESIGN B2, B4, B6) in 32 digits, and nothing of
-//! the planners' ways to get there.
+//! Ideal positions of a motion, from the design's formulas (DESIGN B2, B4, B6) in 32 digits, independent of the
+//! planners' methods.
 
 use super::wide::{PI, Wide};
 use stepscope_core::motion::moves::{Interpolation, Point};
 
-/// The way of a move at a time in s, both from its start; to the right, and within the move.
+/// Travel of a move at a time in s from its start; to the right, and within the move.
 pub(crate) type Way = Box<dyn Fn(Wide) -> Wide>;
 
-/// A move that goes one way.
+/// A move in one direction.
 pub(crate) struct Ideal {
     pub(crate) duration: Wide,
     pub(crate) way: Way,
@@ -58,13 +58,13 @@ pub(crate) fn cosine(steps: f64, duration_s: f64, ramp_s: f64) -> Ideal {
     })
 }
 
-/// The seven phases, from the limits alone: times of the jerk and of the constant acceleration.
+/// The seven phases, computed from the limits: times of the jerk and of the constant acceleration.
 pub(crate) fn jerk_limited(steps: f64, speed: f64, acceleration: f64, jerk: f64) -> Ideal {
     let [n, v, a, j] = [steps, speed, acceleration, jerk].map(wide);
     let (zero, two, six) = (wide(0.0), wide(2.0), wide(6.0));
-    // Time of a jerk phase that each limit allows; the least of them is the one that holds.
+    // Duration of a jerk phase that each limit allows; the minimum applies.
     let jerk_s = (a / j).min((v / j).sqrt()).min((n / (two * j)).cbrt());
-    // Of the acceleration: to the top speed, or until the way is used up.
+    // Duration of constant acceleration: up to the top speed, or until half of the distance is used.
     let to_speed = v / (j * jerk_s) - jerk_s;
     let acceleration = j * jerk_s;
     let root = (jerk_s * jerk_s + wide(4.0) * n / acceleration).sqrt();
@@ -99,7 +99,7 @@ pub(crate) fn half_sine(amplitude: f64, period_s: f64) -> Ideal {
     Ideal { duration: period / two, way: Box::new(way) }
 }
 
-/// The pieces from point to point, each as (its start, right or not, its way).
+/// The pieces between points, each with its start, direction and distance.
 pub(crate) fn pieces(points: &[Point], interpolation: Interpolation) -> Vec<(Wide, bool, Ideal)> {
     let [two, three] = [2.0, 3.0].map(wide);
     let (zero_s, zero) = (wide(points[0].time_s), wide(points[0].position));
@@ -108,7 +108,7 @@ pub(crate) fn pieces(points: &[Point], interpolation: Interpolation) -> Vec<(Wid
     let mean: Vec<Wide> =
         at.windows(2).map(|pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)).collect();
     let absolute = |x: Wide| x.max(-x);
-    // Steffen's slope in the middle of three points.
+    // Steffen's slope at the middle one of three points.
     let slope = |index: usize| {
         let zero = wide(0.0);
         if index == 0 || index == mean.len() {

@@ -1,11 +1,11 @@
-//! Exactness as a theorem (DESIGN B1, B4, B6): over random limits, from tiny to huge, each step falls within
-//! one cycle of where the design's formulas put it in 32 digits; the count is exact, and so is the end.
+//! Exact step times (DESIGN B1, B4, B6): for random limits, from tiny to huge, each step is within one cycle of the
+//! design's formulas in 32 digits. The number of steps is exact, and so is the end.
 //!
 //! ```text
 //! cycle c of step k   s((c - 1)/clock) <= k - 1/2 <= s((c + 1)/clock)     s: `ideal`, in `wide` numbers
 //! ```
 //!
-//! Motions whose document gives the times of their steps (tables, staircases, slices, segments) are held to
+//! Motions whose paper defines the step times (tables, staircases, slices, segments) are compared with
 //! their own curve: R(s) just before and just after each step.
 
 mod ideal;
@@ -27,10 +27,10 @@ use stepscope_core::motion::{
 use stepscope_tests::effort;
 use wide::Wide;
 
-/// Clocks from the slowest to the fastest that a scenario may have.
+/// Clocks from the minimum to the maximum of a scenario.
 const CLOCKS: [u32; 5] = [1, 1000, 999_983, 16_000_000, 1_000_000_000];
 
-/// A magnitude from `least` to `most`, every power of ten as likely; the ends and round numbers among them.
+/// A magnitude from `least` to `most`, each power of ten equally likely, including the ends and round numbers.
 fn magnitude(least: f64, most: f64) -> impl Strategy<Value = f64> + Clone {
     prop_oneof![
         6 => (libm::log(least)..=libm::log(most)).prop_map(libm::exp),
@@ -41,7 +41,7 @@ fn magnitude(least: f64, most: f64) -> impl Strategy<Value = f64> + Clone {
     .prop_map(move |x| x.clamp(least, most))
 }
 
-/// So many steps, left or right.
+/// This number of steps, left or right.
 fn count() -> impl Strategy<Value = f64> + Clone {
     (magnitude(1.0, 1e9), any::<bool>()).prop_map(|(n, left)| libm::round(n) * if left { -1.0 } else { 1.0 })
 }
@@ -50,7 +50,7 @@ fn clock() -> impl Strategy<Value = u32> + Clone {
     prop::sample::select(CLOCKS.to_vec())
 }
 
-/// The plan of one move; what cannot be done is refused with numbers.
+/// The plan of one move; an impossible move is refused with its numbers.
 fn plan(given: Move) -> Result<Option<AxisPlan>, TestCaseError> {
     match plan_axis(&Axis { moves: vec![given], ..Axis::default() }, "axis") {
         Ok(plan) => Ok(Some(plan)),
@@ -65,7 +65,7 @@ fn plan(given: Move) -> Result<Option<AxisPlan>, TestCaseError> {
     }
 }
 
-/// Steps that are looked at: the first, the last, those in the middle, and some between.
+/// Checked steps: the first, the last, those in the middle, and some others.
 fn chosen(count: u64) -> BTreeSet<u64> {
     let near = |middle: u64| middle.saturating_sub(20)..=middle.saturating_add(20);
     let between = (0..=64).map(|part| (u128::from(count) * part / 64) as u64);
@@ -73,7 +73,7 @@ fn chosen(count: u64) -> BTreeSet<u64> {
     all.filter(|k| (1..=count).contains(k)).collect()
 }
 
-/// Whether a step at `place` in `ideal`, which begins `start` cycles after the motion, is within a cycle.
+/// Whether a step at `place` in `ideal`, which begins `start` cycles after the motion, is within one cycle.
 fn is_exact(ideal: &Ideal, start: Wide, place: Wide, cycle: u64, clock_hz: u32) -> Result<(), TestCaseError> {
     let at = |cycles: Wide| {
         let t = ((cycles - start) / Wide::from(u64::from(clock_hz))).max(Wide::from(0.0)).min(ideal.duration);
@@ -90,7 +90,7 @@ fn half_before(k: u64) -> Wide {
     Wide::from(k) - Wide::from(0.5)
 }
 
-/// Holds a move that goes one way to its ideal.
+/// Compares a move in one direction with its ideal.
 fn check_one_way(plan: &AxisPlan, ideal: &Ideal, steps: f64, clock_hz: u32) -> Result<(), TestCaseError> {
     prop_assert_eq!(plan.steps() as f64, steps);
     let profile = &plan.moves()[0].profile;
@@ -104,7 +104,7 @@ fn check_one_way(plan: &AxisPlan, ideal: &Ideal, steps: f64, clock_hz: u32) -> R
         last = cycle;
     }
     prop_assert_eq!(profile.step_cycle(count + 1, clock_hz), None);
-    // The walk gives the same times.
+    // Walking the table gives the same times.
     for (k, due) in (1..=50).zip(plan.due_steps(clock_hz)) {
         prop_assert_eq!(Some(due.cycle), profile.step_cycle(k, clock_hz));
         prop_assert_eq!(due.right, steps > 0.0);
@@ -167,7 +167,7 @@ proptest! {
             max_jerk: Jerk::StepsPerSecond3(jerk), ..JerkLimited::default() };
         if let Some(plan) = plan(Move::JerkLimited(given))? {
             let ideal = ideal::jerk_limited(libm::fabs(steps), speed, acceleration, jerk);
-            // The quickest move that the limits allow, neither more nor less.
+            // The fastest move within the limits.
             let off = (Wide::from(plan.duration_s()) - ideal.duration).to_f64();
             prop_assert!(libm::fabs(off) <= 1e-14 * plan.duration_s(), "{} s off", off);
             check_one_way(&plan, &ideal, steps, clock_hz)?;
@@ -202,7 +202,7 @@ proptest! {
 
     #[test]
     fn curves_through_points_are_exact(
-        // In parts that are exact in binary, and no position on a half step, which a turn would touch.
+        // In parts that are exact in binary, without positions on half steps, which a reversal would touch.
         rows in prop::collection::vec((1..200_000_u32, magnitude(1e-3, 1e9), any::<bool>(), any::<bool>()), 1..12),
         smooth in any::<bool>(), clock_hz in clock(),
     ) {
@@ -245,7 +245,7 @@ proptest! {
     ) {
         let Some(plan) = plan(given.clone())? else { return Ok(()) };
         let peak_speed = plan.peaks().speed;
-        // A polyline that turns within a cycle is not where it was, one cycle after a step.
+        // A polyline that reverses within a cycle has another position one cycle after a step.
         if matches!(given, Move::SineSegments(_)) && peak_speed * 8.0 > f64::from(clock_hz) {
             return Ok(());
         }
@@ -255,7 +255,7 @@ proptest! {
             let way = if due.right { 1.0 } else { -1.0 };
             let past = |cycle: f64| (plan.position(cycle / f64::from(clock_hz)) - made as f64) * way - 0.5;
             let cycle = due.cycle as f64;
-            // The digits of the time and of the position in f64, and what a table's curve stands past its steps.
+            // The rounding of time and position in f64, and the distance of a table's curve from its steps.
             let digits = 1e-14 * (peak_speed * (cycle + 1.0) / f64::from(clock_hz)) + 2e-6;
             prop_assert!(past(cycle - 1.0) <= digits, "{:?}: {:?} late by {}", given, due, past(cycle - 1.0));
             prop_assert!(past(cycle + 1.0) >= -digits, "{:?}: {:?} early by {}", given, due, past(cycle + 1.0));
@@ -264,12 +264,12 @@ proptest! {
         }
         prop_assert!(walked == plan.step_count().min(3000));
         prop_assert!(walked == 3000 || made == plan.steps());
-        // The last step comes before the end, and R of the end is all of them.
+        // The last step is before the end, and R(end) is the total.
         let end = plan.duration_s() * f64::from(clock_hz);
         if let Some(cycle) = profile.step_cycle(plan.step_count(), clock_hz) {
             prop_assert!(cycle as f64 <= end + 1.0, "the last step at {} of {}", cycle, end);
         }
-        // A table ends with its last step, and one to the left is due after its instant (B7).
+        // A table ends with its last step, and a step to the left is due after that time (B7).
         let is_table = matches!(profile, Profile::TrapezoidTable(_) | Profile::Staircase(_));
         let waits = i64::from(is_table && plan.steps() < 0);
         prop_assert_eq!(plan.steps_due(plan.duration_s()), plan.steps() + waits);
@@ -277,7 +277,7 @@ proptest! {
     }
 }
 
-/// Moves with the documents' own step times, and ramps of all shapes.
+/// Moves with the step times of papers, and ramps of all shapes.
 fn own_curve() -> impl Strategy<Value = Move> {
     let speed = Speed::StepsPerSecond;
     let distance = count().prop_map(Distance::Steps);
@@ -345,7 +345,7 @@ fn own_curve() -> impl Strategy<Value = Move> {
 fn a_hundred_million_steps_have_no_drift() {
     const STEPS: u64 = 100_000_000;
     let clock_hz = 16_000_000;
-    // 12345.5 steps/s: step k at (2k - 1)*clock/24691 cycles, in whole numbers.
+    // 12345.5 steps/s: step k at (2k - 1)*clock/24691 cycles, in integers.
     let given = Constant { distance: Distance::Steps(STEPS as f64), speed: Speed::StepsPerSecond(12_345.5) };
     let constant = plan(Move::Constant(given)).expect("holds").expect("plans");
     let (mut walked, mut last) = (0, 0);

@@ -1,9 +1,9 @@
-//! Numbers of about 32 digits, as sums of two f64: a second opinion on what the planners work out in one.
+//! Numbers of about 32 digits, as sums of two f64, for an independent check of the planners' f64.
 //!
 //! ```text
 //! x = high + low, |low| at most half of high's last digit
 //! a + b, a*b   Knuth's and Dekker's sums and products without error, then put in order again
-//! ```
+//! a + b, a*b   Knuth's and Dekker's exact sums and products, then normalized
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -17,20 +17,20 @@ pub(crate) struct Wide {
 /// pi.
 pub(crate) const PI: Wide = Wide { high: core::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
 
-/// a + b without error.
+/// a + b without an error.
 fn two_sum(a: f64, b: f64) -> Wide {
     let high = a + b;
     let virtual_b = high - a;
     Wide { high, low: (a - (high - virtual_b)) + (b - virtual_b) }
 }
 
-/// The same, |a| at least |b|.
+/// The same, if |a| is at least |b|.
 fn in_order(a: f64, b: f64) -> Wide {
     let high = a + b;
     Wide { high, low: b - (high - a) }
 }
 
-/// a*b without error, for magnitudes that Dekker's splitting does not overflow.
+/// a*b without an error, for magnitudes that do not overflow Dekker's splitting.
 fn two_product(a: f64, b: f64) -> Wide {
     let split = |x: f64| {
         let scaled = 134_217_729.0 * x;
@@ -109,7 +109,7 @@ impl Wide {
         self.high
     }
 
-    /// The square root of a number from 0 on.
+    /// The square root of a number >= 0.
     pub(crate) fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::from(0.0);
@@ -118,7 +118,7 @@ impl Wide {
         root + (self - root * root) / (root + root)
     }
 
-    /// The cube root of a number from 0 on.
+    /// The cube root of a number >= 0.
     pub(crate) fn cbrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::from(0.0);
@@ -127,7 +127,7 @@ impl Wide {
         root + (self - root * root * root) / (Self::from(3.0) * root * root)
     }
 
-    /// The sine of 0 to pi, by its series; next to pi with an error of 1e-30.
+    /// The sine of 0 to pi, by its series; near pi with an error of 1e-30.
     pub(crate) fn sin(self) -> Self {
         let square = self * self;
         let mut sum = Self::from(1.0);
@@ -138,12 +138,12 @@ impl Wide {
         sum * self
     }
 
-    /// The lesser of both.
+    /// The minimum.
     pub(crate) fn min(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
 
-    /// The greater of both.
+    /// The maximum.
     pub(crate) fn max(self, other: Self) -> Self {
         if other > self { other } else { self }
     }

@@ -1,6 +1,6 @@
-//! Rules of accessibility that a program can check: axe-core over the page's states (WCAG 2.2 AA and axe's best practice).
+//! Automatic checks of accessibility: axe-core in many states of the page (WCAG 2.2 AA and axe's best practice).
 //!
-//! `STEPSCOPE_AXE` names axe's script; it is run in the page as it is shipped, and never part of it.
+//! `STEPSCOPE_AXE` is the path of axe's script, which runs in the shipped page but is not part of it.
 
 use std::fs;
 
@@ -19,12 +19,12 @@ const RUN: &str = "
 
 #[derive(serde::Deserialize)]
 struct Answer {
-    /// Rules that had something to look at.
+    /// Rules that applied to something.
     rules: usize,
     found: Vec<String>,
 }
 
-/// Adds to `wrong` what axe finds now.
+/// Adds the current violations to `wrong`.
 pub(crate) async fn look(page: &Session, state: &str, wrong: &mut Vec<String>) -> Result<()> {
     if !page.eval::<bool>("'axe' in window").await? {
         let script = fs::read_to_string(named("STEPSCOPE_AXE")?).context("axe's script can't be read")?;
@@ -139,13 +139,13 @@ fn axe_finds_nothing_in_errors_and_dialogs() -> Result<()> {
         page.fill("bus.channels", "many").await?;
         page.ready().await?;
         look(&page, "problems in the form", &mut wrong).await?;
-        // Every message and every dialog, whatever leads to it.
+        // Every message and every dialog, however it is opened.
         page.eval::<u32>(
             "[...document.querySelectorAll('.notice')].filter((notice) => !(notice.hidden = false)).length",
         )
         .await?;
         look(&page, "messages", &mut wrong).await?;
-        // The gallery is empty until it opens; it is looked at with the kinds of experiments.
+        // The gallery is empty until it opens; it is checked with the kinds of experiments.
         page.eval::<()>("document.getElementById('gallery').remove()").await?;
         let dialogs: usize = page.eval("document.querySelectorAll('dialog').length").await?;
         for index in 0..dialogs {

@@ -1,5 +1,5 @@
-//! What one test uses: the page at an address, and its visitors. All of it is given back at the test's end, also where
-//! the test fails, and an error in a browser's console fails the test too.
+//! Setup of one test: the page at an address, and its users. All of it is released at the end of the test, even after
+//! a failure. An error in a browser's console fails the test, too.
 
 use std::{
     future::Future,
@@ -21,37 +21,37 @@ use crate::{
     session::Session,
 };
 
-/// A test that takes longer hangs, on a busy machine, too.
+/// Maximum duration of a test, on a busy machine, too.
 const TEST_LIMIT: Duration = Duration::from_secs(1800);
-/// A browser that takes longer to end a visit hangs.
+/// Maximum time for ending a visit.
 const END_LIMIT: Duration = Duration::from_secs(60);
 
-/// Takes the means of keeping the page from documents to come, before their own scripts look for it: all files of the page
+/// Removes the service worker interface from later documents, before their own scripts run. Otherwise all files of the page
 /// would be fetched and stored for each user.
 const NOT_KEPT: &str = "delete Navigator.prototype.serviceWorker;";
 
-/// Whether the page is kept on the device by its service worker.
+/// Whether the service worker stores the page on the device.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Keeping {
     Kept,
     NotKept,
 }
 
-/// What one test uses.
+/// Setup of one test.
 pub(crate) struct Bench {
     pub(crate) browser: Browser,
     keeping: Keeping,
-    /// Address of the page, such as `http://127.0.0.1:40000/`, of which every user has a name of its own.
+    /// Address of the page, such as `http://127.0.0.1:40000/`; each user has a separate host name.
     page: String,
-    /// Of an engine whose browsers are not shared, or of a Chromium that is the test's own.
+    /// A browser of another engine, or a Chromium for this test only.
     driver: Option<Program>,
-    /// For further visitors of such a browser.
+    /// For additional visitors of such a browser.
     servers: Mutex<Vec<Program>>,
     visitors: Mutex<Vec<(Session, Option<Lent>)>>,
 }
 
-/// Runs `test` with the page as it is shipped in a Chromium that other tests use too, as a user that it has never seen,
-/// on whose device nothing of the page is kept.
+/// Runs `test` with the shipped page in a Chromium that other tests share, as a new user without a stored
+/// page.
 pub(crate) fn in_browser<T, F>(test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
@@ -60,7 +60,7 @@ where
     at_work(pool::served(&dist()?)?, Browser::Chromium, None, Keeping::NotKept, test)
 }
 
-/// As [`in_browser`], but the page is kept, as it is for everybody.
+/// Like [`in_browser`], but the page is stored on the device, as for real users.
 pub(crate) fn in_browser_that_keeps<T, F>(test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
@@ -69,7 +69,7 @@ where
     in_browser_at(&pool::served(&dist()?)?, test)
 }
 
-/// The folder of the page as it is shipped.
+/// The folder of the shipped page.
 pub(crate) fn dist() -> Result<PathBuf> {
     named("STEPSCOPE_DIST").map(PathBuf::from)
 }
@@ -79,8 +79,8 @@ fn web() -> Result<PathBuf> {
     named("STEPSCOPE_WEB").map(PathBuf::from)
 }
 
-/// As [`in_browser`], with the page's sources, of which single modules can be tested. They are many files: they take
-/// longer to load.
+/// Like [`in_browser`], with the page's sources, whose single modules can be tested. They are many files, so they load
+/// more slowly.
 pub(crate) fn in_sources<T, F>(test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
@@ -89,7 +89,7 @@ where
     in_engine(Browser::Chromium, test)
 }
 
-/// As [`in_browser_that_keeps`], with the page at the address of a server of the test's own.
+/// Like [`in_browser_that_keeps`], with the page at the address of the test's own server.
 pub(crate) fn in_browser_at<T, F>(address: &str, test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
@@ -98,7 +98,7 @@ where
     in_engine_at(address.to_owned(), Browser::Chromium, test)
 }
 
-/// As [`in_sources`], in this engine; browsers of other engines than Chromium are started for the test.
+/// Like [`in_sources`], in this engine; browsers other than Chromium are started for the test.
 pub(crate) fn in_engine<T, F>(browser: Browser, test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
@@ -107,7 +107,7 @@ where
     in_engine_at(pool::served(&web()?)?, browser, test)
 }
 
-/// As [`in_browser_at`], in a Chromium of this driver, which is the test's own.
+/// Like [`in_browser_at`], in this driver's Chromium, which only this test uses.
 pub(crate) fn in_chromium_of<T, F>(driver: Program, address: String, test: T) -> Result<()>
 where
     T: FnOnce(Session) -> F,
@@ -151,7 +151,7 @@ where
     })
 }
 
-/// A test's work as a task of its own, so that a panic and an endless wait come back as errors.
+/// Runs the test as a separate task, so that a panic or an endless wait becomes an error.
 async fn guarded(work: impl Future<Output = Result<()>> + 'static) -> Result<()> {
     let task = spawn_local(work);
     let stop = task.abort_handle();
@@ -166,7 +166,7 @@ async fn guarded(work: impl Future<Output = Result<()>> + 'static) -> Result<()>
 }
 
 impl Bench {
-    /// Somebody who was never at the page, at this address or at one that nobody else has.
+    /// A new user, at this address or at a new one.
     pub(crate) async fn visitor(self: &Arc<Self>, address: Option<String>) -> Result<Session> {
         let (client, address, lent) = match &self.driver {
             Some(driver) => (pool::start(self.browser, &driver.address).await?, self.page.clone(), None),
@@ -182,7 +182,7 @@ impl Bench {
         Ok(session)
     }
 
-    /// What every user has: a screen of this size, and a device that keeps the page or does not.
+    /// Settings of each user: the size of the screen, and whether the device stores the page.
     async fn prepare(&self, session: &Session) -> Result<()> {
         session.screen(1440, 900).await?;
         match self.keeping {
@@ -191,8 +191,8 @@ impl Bench {
         }
     }
 
-    /// Lets somebody else into the browser of the test's only user, at another address; with what the console said of
-    /// that user.
+    /// Replaces the test's only user by another one, at another address; also returns the console of the first
+    /// user.
     pub(crate) async fn next_in_browser(self: &Arc<Self>) -> Result<(Vec<String>, Session)> {
         let last = self.visitors().pop();
         let (Some((session, lent)), true) = (last, self.visitors().is_empty()) else {
@@ -205,7 +205,7 @@ impl Bench {
                 lent.open().await?;
                 pool::fresh(&self.page)
             }
-            // Another port makes another origin, and these browsers know no names of visitors.
+            // Another port is another origin, and these browsers do not resolve names of visitors.
             None => {
                 let server = Program::server(&web()?)?;
                 let address = server.address.clone();
@@ -219,7 +219,7 @@ impl Bench {
         Ok((said, session))
     }
 
-    /// What the driver and its browsers have said so far.
+    /// The output of the driver and its browsers so far.
     pub(crate) fn heard(&self) -> Vec<String> {
         self.driver.as_ref().map(Program::heard).unwrap_or_default()
     }
@@ -228,7 +228,7 @@ impl Bench {
         self.visitors.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Reads every user's console and gives the browsers back; `outcome` with what the consoles add.
+    /// Reads every user's console and releases the browsers; returns `outcome` with the errors of the consoles.
     pub(crate) async fn end_visits(&self, mut outcome: Result<()>) -> Result<()> {
         let visitors = std::mem::take(&mut *self.visitors());
         for (session, lent) in visitors {
@@ -238,7 +238,7 @@ impl Bench {
             let complaints = timeout(END_LIMIT, session.complaints()).await;
             let complaints = complaints.context("the console was not read in time").flatten();
             let silent = complaints.as_ref().is_ok_and(Vec::is_empty);
-            // Whatever else is wrong, the browser must not stay; where something is wrong nobody else shall have it.
+            // The browser must end in any case; after a failure no other test may get it.
             let ended = match lent {
                 Some(lent) if outcome.is_ok() && silent => timeout(END_LIMIT, lent.give_back()).await,
                 Some(lent) => timeout(END_LIMIT, lent.end()).await,

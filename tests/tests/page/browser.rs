@@ -1,11 +1,11 @@
-//! The three browser engines: each one's driver, what a session asks of it, and how its console is heard.
+//! The three browser engines: drivers, options of sessions, and consoles.
 
 use std::{env, ffi::OsString, net::TcpListener, path::Path, process::Command};
 
 use anyhow::{Context, Result, bail};
 use serde_json::{Map, Value, json};
 
-/// Flags of every Chromium: no window, and no word to any other host.
+/// Options of every Chromium: no window, and no requests to other hosts.
 const FLAGS: &[&str] = &[
     "--headless",
     // The browser ends when the driver does.
@@ -14,7 +14,7 @@ const FLAGS: &[&str] = &[
     "--disable-gpu",
     "--disable-quic",
     "--no-first-run",
-    // A browser has one user after another, whose pages need no process each.
+    // A browser has one user after another, so their pages need no separate processes.
     "--renderer-process-limit=1",
     "--disable-background-networking",
     "--disable-component-update",
@@ -28,7 +28,7 @@ const FLAGS: &[&str] = &[
 /// A browser engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Browser {
-    /// All tests run here, and share it.
+    /// All tests run here, in shared browsers.
     Chromium,
     /// Without a window, like Chromium.
     Firefox,
@@ -36,18 +36,18 @@ pub(crate) enum Browser {
     WebKit,
 }
 
-/// How a driver says where it listens.
+/// How a driver reports its address.
 pub(crate) enum Says {
-    /// In the line that holds this; the address or the port stands behind it.
+    /// In the line with this text, followed by the address or the port.
     Line(&'static str),
-    /// In the line that holds this; behind it stands no address, but a path.
+    /// In the line with this text, followed by a path.
     Path(&'static str),
-    /// Nothing: it was given this port.
+    /// Not at all: it was given this port.
     Nothing(u16),
 }
 
 impl Browser {
-    /// The driver's call.
+    /// The command of the driver.
     pub(crate) fn driver(self) -> Result<(Command, Says)> {
         let variable = match self {
             Self::Chromium => "STEPSCOPE_CHROMEDRIVER",
@@ -66,7 +66,7 @@ impl Browser {
             }
             Self::WebKit => {
                 named("DISPLAY").context("WebKit draws on a display only")?;
-                // It takes no 0 for a free port. The listener ends here and leaves the port to the driver.
+                // It does not accept port 0. The listener is closed here, so that the driver can use its port.
                 let port = TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
                 command.args(["--host=127.0.0.1", &format!("--port={port}")]);
                 Says::Nothing(port)
@@ -75,7 +75,7 @@ impl Browser {
         Ok((command, says))
     }
 
-    /// What a new session asks for. Its profile is a new one, in the driver's folder for what it leaves behind.
+    /// Options of a new session. Its profile is new, in the folder for the driver's temporary files.
     pub(crate) fn capabilities(self) -> Result<Map<String, Value>> {
         let wanted = match self {
             Self::Chromium => json!({
@@ -91,7 +91,7 @@ impl Browser {
                     "prefs": { "network.dns.disabled": true, "browser.dom.window.dump.enabled": true },
                 },
             }),
-            // The driver knows its own browser.
+            // The driver finds its own browser.
             Self::WebKit => json!({}),
         };
         let Value::Object(wanted) = wanted else { bail!("the capabilities are an object") };

@@ -1,5 +1,5 @@
-//! The motion and the spectrum view: what lies between two cursors, zooming by a box and back, a baseline run to
-//! compare with, harmonics that light up, the values as a table and as files.
+//! The views of motion and spectrum: readings between two cursors, zooming, comparison with a baseline,
+//! highlighted harmonics, and the values as a table and as files.
 
 use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MOUSE_BUTTON_RIGHT, MouseActions, PointerAction};
@@ -15,7 +15,7 @@ use stepscope_core::{
 
 use crate::{bench::in_browser, native::Known, session::Session};
 
-/// A number as the page prints it.
+/// A number in the format of the page.
 fn number(text: &str) -> Result<f64> {
     text.trim().replace('\u{2212}', "-").parse().with_context(|| format!("`{text}` is no number"))
 }
@@ -104,7 +104,7 @@ fn a_box_zooms_in_and_back_restores_the_range() -> Result<()> {
         let second: String = page.eval(SHOWN).await?;
         page.press("#charts", "\u{e00c}").await?;
         page.until("document.querySelector('[data-time=box]').ariaPressed === 'false'").await?;
-        // A drag that is no box moves the time, in many messages and one step back.
+        // A drag without a box moves the time, in many messages and one undo step.
         drag(&page, 0.5, 0.4, MOUSE_BUTTON_LEFT).await?;
         page.until(&format!("{SHOWN} !== '{second}'")).await?;
         page.press("#charts", "\u{e003}").await?;
@@ -164,7 +164,7 @@ fn a_baseline_is_drawn_and_measured_next_to_a_later_run() -> Result<()> {
         page.click("#keep-run").await?;
         page.until("document.getElementById('compared').textContent.includes('Baseline: S-curve')").await?;
 
-        // Another experiment, without loading the page anew.
+        // Another experiment, without reloading the page.
         page.follow(&later.link).await?;
         page.until_digest(&later.digest).await?;
         page.until("document.getElementById('compared').textContent.includes('maximum difference')").await?;
@@ -224,7 +224,7 @@ fn hovering_over_a_harmonic_highlights_its_stem_and_row() -> Result<()> {
         for said in ["no window", "coherent", "harmonics 2 to 1000", "250 mHz"] {
             ensure!(note.contains(said), "{said} in {note}");
         }
-        // Chart and table beside each other.
+        // Chart and table next to each other.
         page.click("#view-spectrum .most").await?;
         page.until("document.getElementById('harmonics').checkVisibility()").await?;
         let dark = page.canvas("spectrum-cursor").await?.hash;
@@ -281,7 +281,7 @@ fn keys_move_a_cursor_and_a_table_shows_its_values() -> Result<()> {
     })
 }
 
-/// Keeps every file that is saved, by its name, in place of a download.
+/// Stores the saved files by name instead of downloading them.
 const KEEP: &str = "window.saved = {}; const make = URL.createObjectURL;
     URL.createObjectURL = (blob) => { window.last = blob; return make.call(URL, blob); };
     HTMLAnchorElement.prototype.click = function () { window.saved[this.download] = window.last; };";

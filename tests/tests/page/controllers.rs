@@ -1,4 +1,4 @@
-//! Several controllers on one line: adding them, looking at each, and what is wrong with one.
+//! Several controllers on one line: adding and selecting them, and their errors.
 
 use anyhow::{Result, ensure};
 
@@ -120,12 +120,12 @@ fn a_copied_controller_has_a_new_address_and_can_be_removed() -> Result<()> {
         page.choose("#controller", "2").await?;
         page.until_digest(&Known::digest_of(three, 2)?).await?;
         page.click("[aria-label='Remove controller 2']").await?;
-        // Two are left: the views look at the last one.
+        // Two are left: the views show the last one.
         let left = r#"{"line":{"address":0},"controllers":[{"address":2,"axes":[{}]}]}"#;
         page.until_digest(&Known::digest_of(left, 1)?).await?;
         page.click("[aria-label='Remove controller 2']").await?;
         page.until_digest(&Known::digest_of(r#"{"line":{"address":0}}"#, 0)?).await?;
-        // Where a button is gone the focus stays in the form.
+        // If a button disappears, the focus stays in the form.
         page.until("document.activeElement.closest('#form')").await
     })
 }

@@ -1,4 +1,4 @@
-//! The cursors A and B: taps set them, a finger drags their handles, keys move them, and readings are the exact values of
+//! The cursors A and B: taps set them, a finger drags their handles, keys move them, and readings are exact values of
 //! their cycles.
 
 use anyhow::{Context, Result, ensure};
@@ -15,18 +15,18 @@ use crate::{
 const RIGHT: char = '\u{e014}';
 const DELETE: char = '\u{e017}';
 
-/// A handle as it is on show.
+/// A visible handle.
 #[derive(Debug, Deserialize)]
 struct Handle {
     name: String,
-    /// What a screen reader says of its place.
+    /// Its position for a screen reader.
     said: String,
     width: f64,
     height: f64,
     /// Its middle in the window.
     x: f64,
     y: f64,
-    /// A finger on its middle meets it.
+    /// A finger on its middle hits it.
     met: bool,
 }
 
@@ -40,7 +40,7 @@ async fn handle(page: &Session, css: &str) -> Result<Handle> {
     page.js(HANDLE, vec![json!(css)]).await
 }
 
-/// Cycle of a handle's cursor; none where it is not set.
+/// Cycle of a handle's cursor; `None` if it is not set.
 pub(crate) async fn cycle(page: &Session, css: &str) -> Result<Option<u64>> {
     let said = handle(page, css).await?.said;
     let Some((_, cycle)) = said.split_once("cycle ") else {
@@ -50,7 +50,7 @@ pub(crate) async fn cycle(page: &Session, css: &str) -> Result<Option<u64>> {
     cycle.parse().map(Some).with_context(|| format!("`{said}`"))
 }
 
-/// A finger goes from the middle of a handle to a place across the window.
+/// Drags a handle from its middle to a position in the window with a finger.
 async fn finger(page: &Session, css: &str, to: f64) -> Result<()> {
     let Handle { x, y, met, .. } = handle(page, css).await?;
     ensure!(met, "{css} lies under something else");
@@ -66,7 +66,7 @@ async fn finger(page: &Session, css: &str, to: f64) -> Result<()> {
     touch("touchEnd", json!([])).await
 }
 
-/// A finger taps the charts, or the row EN of the pulses, at a place across the window.
+/// Taps the charts, or the row EN of the pulses, at a position in the window with a finger.
 async fn tap(page: &Session, tab: &str, x: f64) -> Result<()> {
     let (css, down) = if tab == "motion" { ("#charts", 60) } else { ("#pulses", 10) };
     let y: f64 = page
@@ -91,7 +91,7 @@ fn a_finger_places_drags_and_removes_both_cursors() -> Result<()> {
         for (tab, strip) in [("motion", "#charts-handles"), ("pulses", "#pulses-handles")] {
             page.open("").await?;
             page.click(&format!("#tab-{tab}")).await?;
-            // It says how it stands once there is a result.
+            // It has its value once there is a result.
             page.until(&format!("document.querySelector('{strip} .handle').ariaValueText !== null")).await?;
             page.js::<()>(
                 "document.querySelector(arguments[0]).scrollIntoView({ block: 'center' });",
@@ -114,19 +114,19 @@ fn a_finger_places_drags_and_removes_both_cursors() -> Result<()> {
             }
             ensure!(cycles[0] < cycles[1], "{tab}: {cycles:?}");
             page.picture(&format!("cursors-{tab}")).await?;
-            // Both views have them, with what lies between.
+            // Both views show them, and the readings between them.
             let readings: String =
                 page.eval("document.getElementById('cursor-readings').textContent").await?;
             ensure!(readings.contains("A ") && readings.contains("B−A"), "{tab}: {readings}");
             page.until("!document.getElementById('between').hidden").await?;
 
-            // It is taken where it is, and goes on from there.
+            // The drag starts at its position.
             let (first, css) = (format!("{strip} .handle.a"), format!("{strip} .handle.b"));
             let stays = handle(&page, &first).await?;
             finger(&page, &css, 320.0).await?;
             let later = async || Ok(cycle(&page, &css).await?.filter(|cycle| *cycle > cycles[1]));
             page.eventually(&format!("{tab}: B goes later than {cycles:?}"), later).await?;
-            // In the pulses it came to stand on an edge of the chosen row that is near.
+            // In the pulses it snapped to a nearby edge of the selected row.
             ensure!((handle(&page, &first).await?.x - stays.x).abs() <= 7.0, "A stays");
             finger(&page, &css, 20.0).await?;
             page.until(&format!("document.querySelector('{css}').ariaValueText === 'not set'")).await?;
@@ -164,7 +164,7 @@ fn keys_place_a_cursor_move_it_and_remove_it() -> Result<()> {
     })
 }
 
-/// Numbers in a reading, by what stands before them.
+/// Numbers in a reading, by their labels.
 pub(crate) fn reading(text: &str, name: &str) -> Result<f64> {
     let rest = text.split_once(&format!("{name} ")).with_context(|| format!("no {name} in `{text}`"))?.1;
     let number = rest.split([' ', '\u{a0}']).next().unwrap_or_default().replace('\u{2212}', "-");
@@ -180,7 +180,7 @@ fn a_reading_is_the_value_in_the_cycle_of_the_cursor() -> Result<()> {
             known.recording.first_tick().context("a tick")?.seconds(known.experiment.config().clock_hz());
         let steps = steps(&known.recording.trace, 0);
         let pulses = Pulses::of_run(0, &steps, &known.recording.packets, None, known.experiment.config());
-        // With the whole run on show a pixel has some ten thousand cycles, and in them several steps.
+        // With the whole run visible a pixel has some ten thousand cycles with several steps.
         for cycle in [1_600_123, 3_201_462, 4_100_456] {
             page.open(&format!("#{}&v=a{cycle}", known.link)).await?;
             let digits = cycle.to_string();
@@ -204,7 +204,7 @@ fn a_reading_is_the_value_in_the_cycle_of_the_cursor() -> Result<()> {
             }
         }
 
-        // So is the difference to a baseline, while both runs go on.
+        // So is the difference from a baseline, while both runs last.
         let later = Known::of(
             r#"{"source":{"motion":{"axes":[{"moves":[{"trapezoid":{"distance":{"steps":3000}}}]}]}}}"#,
         )?;
@@ -224,7 +224,7 @@ fn a_reading_is_the_value_in_the_cycle_of_the_cursor() -> Result<()> {
     })
 }
 
-/// Handles and flags that lie on a reading, or on what a chart is called.
+/// Handles and flags that cover a reading, or the name of a chart.
 const COVERED: &str = "
     const seen = (css) => [...document.querySelectorAll(css)].filter((node) => node.checkVisibility() && node.textContent.trim());
     const over = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;

@@ -1,12 +1,12 @@
-//! What tests of the dialog Device share: the dialog, and a mock of `navigator.serial` (LIVE H6), a port whose streams lead to a
-//! second worker of the page's own, which is the device of a host or the host of a device. What a real port adds: `live_port`.
+//! Shared by the tests of the dialog Device: the dialog, and a mock of `navigator.serial` (LIVE H6). The mock is a port whose
+//! streams lead to a second worker of the page, as a simulated device or a simulated host. Real ports: `live_port`.
 
 use anyhow::{Result, ensure};
 use serde_json::{Value, json};
 
 use crate::{browser::Browser, native::Known, session::Session};
 
-/// Ticks of 20 ms: a queue of seconds, which a busy machine does not let run dry; and a host that tries again and again.
+/// Ticks of 20 ms: the queue lasts for seconds, so that it does not run empty on a busy machine; the host repeats many times.
 pub(crate) const FRAMED: &str = r#"{"line":{"protocol":"framed","host":{"attempts":40}},"bus":{"step_period_cycles":3200,"queue_depth":200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]}]}}}"#;
 
@@ -15,13 +15,13 @@ pub(crate) const SAID: &str = "(document.getElementById('live-status')?.textCont
 pub(crate) const REPORT: &str = "document.getElementById('live-report').value";
 pub(crate) const STANDING: &str = "document.getElementById('live-standing').textContent";
 pub(crate) const MESSAGE: &str = "document.getElementById('link-message').innerText";
-/// What had the port has given it back.
+/// Whether the port has been released.
 pub(crate) const ENDED: &str = "!document.getElementById('live-close').disabled && peer.closed > 0";
 
-/// A port of which the other end is: a controller of a scenario (`serve`), its host (`stream`), or nobody (`silent`); one that
-/// cannot be opened (`taken`); one with a controller that was allowed before, so that nobody is asked for it (`allowed`).
-/// The other end begins when the port is opened, once `window.held` is there, if a test has put that; it may stay (`stays`) when the
-/// port is closed, as a device does.
+/// The other end of a port: a controller of a scenario (`serve`), its host (`stream`), or nothing (`silent`). A port may also
+/// fail to open (`taken`), or have a controller and be allowed already, so that no chooser opens (`allowed`). The other end starts
+/// when the port is opened and, if a test sets it, `window.held` exists; with `stays` it continues when the port is closed, like a
+/// device.
 const MOCK: &str = "(role, json, stays) => {
     const peer = (window.peer = { sought: 0, told: [], opened: [], closed: 0, lose() {}, end() {} });
     const begin = () => new Promise((begun, fail) => {
@@ -45,7 +45,7 @@ const MOCK: &str = "(role, json, stays) => {
             const back = new TransformStream();
             Object.assign(port, { readable: there.readable, writable: back.writable });
             if (role === 'silent') return void back.readable.pipeTo(new WritableStream());
-            // Who is at the other end and goes does not close the port.
+            // The end of the other side does not close the port.
             const wire = new TransformStream();
             wire.readable.pipeTo(there.writable, { preventClose: true }).catch(() => {});
             const own = new TransformStream();
@@ -68,8 +68,8 @@ const MOCK: &str = "(role, json, stays) => {
     Object.defineProperty(navigator, 'serial', { configurable: true, get() { peer.sought += 1; return serial; } });
 }";
 
-/// Opens the page with the mock: there before the page's scripts, or, where a driver has no means for that, after them and
-/// before the dialog, which is the first to look for ports (`ports_are_searched_only_with_the_dialog_open`).
+/// Opens the page with the mock, which is installed before the page's scripts or, if a driver cannot do this, after them and
+/// before the dialog, which is the first to search for ports (`ports_are_searched_only_with_the_dialog_open`).
 pub(crate) async fn open_with(page: &Session, fragment: &str, role: &str, json: &str) -> Result<()> {
     open_at(page, fragment, (json, role, false)).await
 }
@@ -84,12 +84,12 @@ async fn open_at(page: &Session, fragment: &str, (json, role, stays): (&str, &st
     page.js::<bool>(&format!("{mock} return true;"), vec![]).await.map(drop)
 }
 
-/// Opens the page with a scenario and the dialog on it, with a port whose other end has this role.
+/// Opens the page with a scenario and the dialog for it, with this role at the other end of the port.
 pub(crate) async fn open(page: &Session, json: &str, role: &str) -> Result<Known> {
     open_beside(page, (json, role, false)).await
 }
 
-/// The same; `true` with a device that stays when the port is closed.
+/// The same; `true` for a device that continues when the port is closed.
 pub(crate) async fn open_beside(page: &Session, there: (&str, &str, bool)) -> Result<Known> {
     let known = Known::of(there.0)?;
     open_at(page, &format!("#{}", known.link), there).await?;
@@ -102,12 +102,12 @@ pub(crate) async fn open_beside(page: &Session, there: (&str, &str, bool)) -> Re
     Ok(known)
 }
 
-/// Chooses the port, and starts.
+/// Selects the port, and starts.
 pub(crate) async fn start(page: &Session) -> Result<()> {
     start_by(page, "#live-choose").await
 }
 
-/// Takes the port that this button gives, and starts.
+/// Selects the port of this button, and starts.
 pub(crate) async fn start_by(page: &Session, button: &str) -> Result<()> {
     ensure!(page.eval::<Vec<u32>>("peer.opened").await?.is_empty(), "a port is open before a press");
     page.click(button).await?;
@@ -116,14 +116,14 @@ pub(crate) async fn start_by(page: &Session, button: &str) -> Result<()> {
     page.click("#live-start").await
 }
 
-/// Where the model's motors stand at the end.
+/// The model's final positions.
 pub(crate) fn positions(known: &Known) -> Vec<String> {
     let run = known.experiment.run(&mut Vec::new());
     let channels = usize::from(known.experiment.config().channels());
     run.positions().iter().take(channels).map(ToString::to_string).collect()
 }
 
-/// The stream that has ended is verified, by a report with the model's ticks and positions, which is given.
+/// Checks that the stream is verified with the model's ticks and positions; returns the report.
 pub(crate) async fn verified(page: &Session, known: &Known) -> Result<String> {
     let report: String = page.eval(REPORT).await?;
     let said: String = page.eval(SAID).await?;
@@ -137,17 +137,17 @@ pub(crate) async fn verified(page: &Session, known: &Known) -> Result<String> {
     Ok(report)
 }
 
-/// As a soft device the page answers the host at the port, and the session opens with its digest.
+/// As a simulated device the page replies to the host at the port, and the session opens with its digest.
 pub(crate) async fn answers_a_host(page: &Session, known: &Known) -> Result<()> {
     page.click("[name=live-role][value=serve]").await?;
     start(page).await?;
-    // The host is the page's own, and its stream is confirmed to the end.
+    // The host is the page's own, and its stream is confirmed completely.
     page.until("peer.told.some(({ reported }) => reported?.verified)").await?;
     session_opens(page, known).await?;
     page.until("peer.closed === 1").await
 }
 
-/// A host has sent the scenario's ticks to the page; that it did them is shown, and the session opens with its digest.
+/// Checks that the page shows the execution of a host's ticks, and that the session opens with its digest.
 pub(crate) async fn session_opens(page: &Session, known: &Known) -> Result<()> {
     let (depth, steps) = (known.experiment.config().queue_depth(), positions(known).join(" "));
     page.until(&format!("{STANDING}.includes('READY, queue 0/{depth}, positions {steps}')")).await?;

@@ -1,4 +1,4 @@
-//! What a session asks of its browser beyond WebDriver: Chromium by the DevTools protocol, the others as well as they can.
+//! Functions beyond WebDriver: Chromium by the DevTools protocol, the other browsers as far as possible.
 
 use anyhow::{Result, bail};
 use fantoccini::{Client, error::CmdError, wd::WebDriverCompatibleCommand};
@@ -9,7 +9,7 @@ use url::{ParseError, Url};
 use crate::{browser::Browser, session::Session};
 
 impl Session {
-    /// Size of the window's inside in CSS pixels.
+    /// Size of the viewport in CSS pixels.
     pub(crate) async fn screen(&self, width: u32, height: u32) -> Result<()> {
         if self.bench.browser != Browser::Chromium {
             return self.window(width, height).await;
@@ -18,7 +18,7 @@ impl Session {
         self.devtools("Emulation.setDeviceMetricsOverride", size).await.map(drop)
     }
 
-    /// The same where nothing but the window can be sized: its frame is found by a first attempt.
+    /// The same, if only the window can be sized: its frame is measured first.
     async fn window(&self, width: u32, height: u32) -> Result<()> {
         self.client.set_window_size(width, height).await?;
         let inside: (u32, u32) = self.eval("[innerWidth, innerHeight]").await?;
@@ -26,13 +26,13 @@ impl Session {
         Ok(self.client.set_window_size(width + frame.0, height + frame.1).await?)
     }
 
-    /// What the system says it prefers, `light` or `dark`.
+    /// The color scheme of the system, `light` or `dark`.
     pub(crate) async fn system_colours(&self, scheme: &str) -> Result<()> {
         let features = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
         self.devtools("Emulation.setEmulatedMedia", features).await.map(drop)
     }
 
-    /// A script that runs in every document to come, before the document's own.
+    /// A script that runs in each later document, before its own scripts.
     pub(crate) async fn before_scripts(&self, source: &str) -> Result<()> {
         self.devtools("Page.addScriptToEvaluateOnNewDocument", json!({ "source": source })).await.map(drop)
     }
@@ -42,7 +42,7 @@ impl Session {
         command(&self.client, method, parameters).await
     }
 
-    /// Lets the page that is open read and write the clipboard, which is empty then, whoever used it before.
+    /// Allows the current page to read and write the clipboard, and empties it.
     pub(crate) async fn allow_clipboard(&self) -> Result<()> {
         let origin = self.address().trim_end_matches('/');
         let permissions = ["clipboardReadWrite", "clipboardSanitizedWrite"];
@@ -56,8 +56,8 @@ impl Session {
     }
 
     /// Errors in the browser's console: exceptions, refused loads, breaches of the content security policy.
-    /// Chromium tells all of them, Firefox the exceptions; WebKit, and the others' refused loads, from when the page
-    /// has loaded.
+    /// Chromium reports all of them, Firefox the exceptions; for WebKit, and for refused loads of the others, they are
+    /// collected from the end of loading on.
     pub(crate) async fn complaints(&self) -> Result<Vec<String>> {
         if self.bench.browser != Browser::Chromium {
             let mut heard: Vec<String> = self.eval("window.heard ?? []").await?;
@@ -70,7 +70,7 @@ impl Session {
         Ok(severe.map(|entry| entry["message"].to_string()).collect())
     }
 
-    /// Collects the errors of the page that was loaded where the browser does not tell them.
+    /// Collects the errors of the loaded page, if the browser does not report them.
     pub(crate) async fn listen(&self) -> Result<()> {
         if self.bench.browser == Browser::Chromium {
             Ok(())
@@ -80,13 +80,13 @@ impl Session {
     }
 }
 
-/// A command of the Chrome DevTools protocol to the tab on show.
+/// A command of the Chrome DevTools protocol to the visible tab.
 pub(crate) async fn command(client: &Client, method: &str, parameters: Value) -> Result<Value> {
     let body = json!({ "cmd": method, "params": parameters });
     Ok(chrome(client, "goog/cdp/execute", body).await?)
 }
 
-/// What Chromium's console has said since it was last asked.
+/// New messages of Chromium's console.
 pub(crate) async fn console(client: &Client) -> Result<Vec<Value>> {
     match chrome(client, "se/log", json!({ "type": "browser" })).await? {
         Value::Array(entries) => Ok(entries),
@@ -106,7 +106,7 @@ const LISTEN: &str = "
     document.addEventListener('securitypolicyviolation', (event) => say(`${event.violatedDirective}: ${event.blockedURI}`));
     return true;";
 
-/// A command that only chromedriver knows.
+/// A command of chromedriver only.
 #[derive(Debug)]
 struct ChromeCommand {
     place: &'static str,

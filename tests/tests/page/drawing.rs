@@ -69,12 +69,12 @@ fn the_overview_is_drawn_when_it_is_shown_again() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.ready().await?;
-        // As wide as before, and out of sight: it is asked for, and there is nothing to make.
+        // The same width, but hidden: it is requested, and there is nothing to draw.
         page.eval::<String>(&format!("{STRIP}.style.height = '0'")).await?;
         page.until(&format!("{STRIP}.clientHeight === 0")).await?;
         page.fill(DISTANCE, "800").await?;
         page.until_digest(&Known::of(&with_distance(800.0))?.digest).await?;
-        // Blank, as nothing has been drawn since.
+        // Blank, because nothing has been drawn since.
         page.eval::<u32>(&format!("{STRIP}.width = 300")).await?;
         ensure!(page.canvas("overview").await?.colours < 2, "nothing is drawn out of sight");
         page.eval::<String>(&format!("{STRIP}.style.height = ''")).await?;

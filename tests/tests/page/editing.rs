@@ -1,4 +1,4 @@
-//! Typing into the form: what follows from it, what is wrong with it, and the way back.
+//! Typing into the form: results, errors and undo.
 
 use anyhow::{Result, ensure};
 
@@ -215,7 +215,7 @@ fn segments_are_typed_as_lines_and_errors_name_their_line() -> Result<()> {
         page.ready().await?;
         let shown = page.field(LIST).await?;
         ensure!(shown.invalid && shown.error.contains("Line 2: \u{201c}faster\u{201d}"), "{shown:?}");
-        // The draft, and what was typed into one field without leaving it.
+        // The draft, and all edits of one field without leaving it.
         for _ in 0..2 {
             page.click("#undo").await?;
         }

@@ -1,4 +1,4 @@
-//! When the engine can't be had, or dies.
+//! Failures of the engine.
 
 use anyhow::{Result, ensure};
 use serde_json::{Value, json};
@@ -23,29 +23,29 @@ fn a_browser_without_webassembly_gets_a_message() -> Result<()> {
     })
 }
 
-/// Lets the test reach the worker that the page has started.
+/// Gives the test access to the page's worker.
 const REACH: &str = "window.heard = 0; window.workers = 0; window.Worker = class extends Worker { \
      constructor(...given) { super(...given); window.worker = this; window.workers += 1; \
          this.addEventListener('message', ({ data }) => { if (data.event === 'progress') window.heard += 1; }); } \
      postMessage(data, ...given) { if (!(window.deaf && 'cancel' in data)) super.postMessage(data, ...given); } };";
 
-/// 22 million steps: seconds, and asked before it runs.
+/// 22 million steps: the run takes seconds and needs a confirmation.
 const LONG: &str = r#"{"source":{"motion":{"axes":[{"moves":[
     {"cosine":{"distance":{"steps":22000000},"duration_s":600,"ramp_s":10}}]}]}}}"#;
 
-/// Begins a run that takes its time, and waits until it tells of itself.
+/// Starts a long run, and waits for its progress.
 async fn begin_long_run(page: &Session) -> Result<()> {
     page.open(&format!("#{}", link_of(LONG)?)).await?;
     page.click("#run-anyway").await?;
     page.until("document.getElementById('status').textContent.includes('%')").await
 }
 
-/// What the worker has counted: scenarios validated, and runs.
+/// The worker's counters: validated scenarios, and runs.
 const COUNTS: &str = "new Promise((done) => { const hear = ({ data }) => { if (data.id === -1) { \
      window.engine.removeEventListener('message', hear); done([data.value.validated, data.value.runs]); } }; \
      window.engine.addEventListener('message', hear); window.engine.postMessage({ id: -1, method: 'counts', args: [] }); })";
 
-/// Takes three digits away from a field, each when the worker has answered for the one before.
+/// Removes three digits of a field, each after the reply to the previous request.
 const SHORTEN: &str = "const input = document.querySelector(arguments[0]);
     const answered = () => new Promise((done) => {
         const hear = ({ data }) => { if (data.id === -2) { window.engine.removeEventListener('message', hear); done(); } };
@@ -66,7 +66,7 @@ fn a_keystroke_parses_and_plans_once() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(REACH).await?;
         page.open("").await?;
-        // What a refused motion is offered is made by another worker.
+        // Another worker computes the remedies of a refused motion.
         page.eval::<bool>("(window.engine = window.worker, true)").await?;
         page.fill(DISTANCE, "1600").await?;
         page.until_digest(&Known::of(&with_distance(1600.0))?.digest).await?;
@@ -75,7 +75,7 @@ fn a_keystroke_parses_and_plans_once() -> Result<()> {
         let field = format!("[data-path=\"{DISTANCE}\"]");
         page.press(&field, "\u{e010}0").await?;
         page.press(&field, "0").await?;
-        // Each question waits for the answers before it, so there is an end of it.
+        // Each request waits for the previous replies, so this ends.
         let mut counts = [validated, runs];
         for _ in 0..200 {
             counts = page.eval(COUNTS).await?;
@@ -110,14 +110,14 @@ fn a_canceled_run_stops_completely() -> Result<()> {
         begin_long_run(&page).await?;
         page.click("#cancel").await?;
         page.until("document.getElementById('engine-message').textContent.includes('canceled')").await?;
-        // A run goes on by a slice of some ms between two answers, and tells of itself after a few.
+        // A run continues in slices of some ms, and reports its progress after a few.
         let heard = "(async () => { const before = window.heard; \
              for (let question = 0; question < 100; question++) await new Promise((answered) => { \
                  const hear = ({ data }) => { if (data.id === -1) { window.worker.removeEventListener('message', hear); answered(); } }; \
                  window.worker.addEventListener('message', hear); \
                  window.worker.postMessage({ id: -1, method: 'pulses', args: [0, 1000, 10] }); }); \
              return window.heard - before; })()";
-        // One may have been on its way.
+        // One message may still arrive.
         ensure!(page.eval::<u32>(heard).await? <= 1, "it still runs");
         assert_eq!(page.eval::<u32>("window.workers").await?, 1, "it heard the cancel");
         page.click("#undo").await?;
@@ -132,7 +132,7 @@ fn an_unresponsive_engine_is_replaced_and_recomputes_the_result() -> Result<()> 
         page.before_scripts(REACH).await?;
         page.open(&format!("#{}", known.link)).await?;
         page.until_digest(&known.digest).await?;
-        // In the same visit, so that there is a last result.
+        // In the same visit, so that there is a previous result.
         page.follow(&link_of(LONG)?).await?;
         page.until("!document.getElementById('budget').hidden").await?;
         page.js::<()>("window.deaf = true;", vec![]).await?;
@@ -143,7 +143,7 @@ fn an_unresponsive_engine_is_replaced_and_recomputes_the_result() -> Result<()> 
         let message = page.text("#engine-message").await?;
         ensure!(message.contains("canceled"), "{message}");
 
-        // The views still show the last result, and it can be asked: another part of it is drawn.
+        // The views still show the last result and can request other parts of it.
         assert_eq!(page.text("#digest").await?, known.digest);
         let asked = "new Promise((done) => { const hear = ({ data }) => { if (data.id === -1) done(data.value ? \
              data.value.high.length : 0); }; window.worker.addEventListener('message', hear); \
@@ -167,7 +167,7 @@ fn requests_during_an_unanswered_cancel_are_executed() -> Result<()> {
     })
 }
 
-/// Lets the engine run out of stack, by a call with more arguments than fit on it.
+/// Overflows the engine's stack by a call with too many arguments.
 async fn crash(page: &Session) -> Result<()> {
     page.eval::<bool>(
         "(window.worker.postMessage({ id: -1, method: 'check', args: new Array(1e6).fill(0) }), true)",
@@ -209,7 +209,7 @@ fn a_crash_of_the_engine_is_reported_and_repaired() -> Result<()> {
 #[test]
 fn an_engine_that_cannot_be_loaded_is_reported() -> Result<()> {
     in_browser(|page| async move {
-        // Every worker ends in an error of its own before it hears anything.
+        // Every worker fails before it receives anything.
         page.before_scripts(
             "window.Worker = class extends EventTarget { constructor() { super(); \
              queueMicrotask(() => this.onerror(new ErrorEvent('error', { message: 'not to be had' }))); } \

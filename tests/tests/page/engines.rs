@@ -1,4 +1,4 @@
-//! The page's main job and the golden digests, in every engine: `cargo xtask test --only engines`.
+//! The page's main task and the golden digests, in every engine: `cargo xtask test --only engines`.
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
@@ -12,7 +12,7 @@ use crate::{
     session::Session,
 };
 
-/// What a user does with the page, from its loading to the link that another user, who is given, opens.
+/// A complete use of the page, from loading to a link that a second user opens; returns this user.
 async fn main_job(page: Session) -> Result<Session> {
     let (default, typed) = (Known::of("{}")?, Known::of(&with_distance(1200.0))?);
     page.open("").await?;
@@ -40,7 +40,7 @@ async fn main_job(page: Session) -> Result<Session> {
     ensure!(page.pulses().await?.ink("--step").pixels > 200, "the pulses are drawn");
     page.click("#zoom-fit").await?;
 
-    // Where the clipboard is refused the page offers the link to be copied by hand.
+    // Without access to the clipboard the page shows the link for manual copying.
     page.click("#share").await?;
     page.until("!document.getElementById('copy-link').disabled").await?;
     page.click("#copy-link").await?;
@@ -65,7 +65,7 @@ async fn main_job(page: Session) -> Result<Session> {
     Ok(stranger)
 }
 
-/// A second engine, as the page makes it, in a worker of its own.
+/// A second engine, created like the page's, in its own worker.
 const ENGINE: &str = "
     return import(new URL('engine/engine.js', document.baseURI)).then(({ Engine }) => {
         let end;
@@ -79,7 +79,7 @@ const ENGINE: &str = "
         return true;
     });";
 
-/// Every golden case gives its digests in the page's own engine, and every preset with a plant the plant's.
+/// Every golden case has its digests in the page's engine, and every preset with a plant that of the plant.
 async fn golden(page: &Session) -> Result<()> {
     page.open("").await?;
     page.js::<bool>(ENGINE, vec![]).await?;
@@ -107,7 +107,7 @@ async fn golden(page: &Session) -> Result<()> {
     Ok(())
 }
 
-/// One browser for both: starting one is a good part of the time.
+/// One browser for both, because starting one takes long.
 async fn all(page: Session) -> Result<()> {
     let stranger = main_job(page).await?;
     golden(&stranger).await

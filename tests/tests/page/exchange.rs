@@ -1,4 +1,4 @@
-//! Links that prove themselves, the view in a link, and files that are taken in.
+//! Links with digests, views in links, and imported files.
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
@@ -43,7 +43,7 @@ fn an_opened_link_is_labeled_as_the_senders_until_it_is_edited() -> Result<()> {
         stranger.open(&format!("#{fragment}")).await?;
         stranger.until(&format!("{SEEN}.startsWith('Reproduced bit-exactly: ')")).await?;
         ensure!(stranger.text("#seen-message").await?.contains(&known.digest), "the digest is named");
-        // The digests stay in the address, also for a reload.
+        // The digests stay in the address, also after a reload.
         stranger.until_equal("location.hash", &json!(format!("#{fragment}"))).await?;
         stranger.picture("reproduced").await?;
 
@@ -120,16 +120,16 @@ fn the_view_of_a_link_is_shown_without_its_invalid_parts() -> Result<()> {
         page.open(&format!("#{}&v=1000-90000.k2.a2000.b80000.tpulses.zebra.x99.ufeet", known.link)).await?;
         page.until_digest(&digest).await?;
         assert_eq!(page.eval::<String>("document.getElementById('controller').value").await?, "2");
-        // What was read, and no more, is what the address says of it.
+        // The address has exactly the parts that were read.
         let wanted = format!("#{}&v=1000-90000.k2.a2000.b80000.tpulses", known.link);
         page.until_equal("location.hash", &json!(wanted)).await?;
-        // As links of the first form wrote it.
+        // In the form of the first links.
         page.open(&format!("#{}&v=1000-90000", known.link)).await?;
         page.until_equal("location.hash", &json!(format!("#{}&v=1000-90000", known.link))).await
     })
 }
 
-/// Drops a file of this name and text on the page.
+/// Drops a file with this name and text on the page.
 pub(crate) async fn drop_file(page: &Session, name: &str, text: &str) -> Result<()> {
     let script = "const data = new DataTransfer(); data.items.add(new File([arguments[1]], arguments[0]));
         const over = new DragEvent('dragover', { dataTransfer: data, bubbles: true, cancelable: true });
@@ -160,7 +160,7 @@ fn a_dropped_scenario_is_shown_and_undo_restores_the_work() -> Result<()> {
         page.click("#undo").await?;
         page.until_digest(&own.digest).await?;
 
-        // What cannot be shown changes nothing.
+        // A file that cannot be opened changes nothing.
         for (name, text, says) in [
             ("bad.json", r#"{"bus":{"slots":200},"clok_hz":1}"#, "2 problems: clok_hz"),
             ("cut.json", "{\"bus\":", "invalid JSON"),

@@ -1,4 +1,4 @@
-//! Files that the page saves: the bytes that the core writes natively.
+//! Files that the page saves have the same bytes as those of the core.
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
@@ -13,12 +13,12 @@ use stepscope_core::{
 
 use crate::{bench::in_browser, exchange::drop_file, native::Known, session::Session};
 
-/// Keeps every file that is saved, by its name, in place of a download.
+/// Stores the saved files by name instead of downloading them.
 pub(crate) const KEEP: &str = "window.saved = {}; const make = URL.createObjectURL;
     URL.createObjectURL = (blob) => { window.last = blob; return make.call(URL, blob); };
     HTMLAnchorElement.prototype.click = function () { window.saved[this.download] = window.last; };";
 
-/// Presses the button of a file whose name ends so, and gives its name and text.
+/// Presses the button of the file whose name ends like this; returns its name and text.
 async fn saved(page: &Session, ends: &str) -> Result<(String, String)> {
     let name: String = page
         .eval(&format!("document.querySelector('[data-file$=\"{ends}\"]').dataset.file"))
@@ -49,7 +49,7 @@ fn edges(known: &Known, records: &[Record]) -> Result<String> {
     Ok(text)
 }
 
-/// What lies between two cycles, both in it: the first record is the one at `start`.
+/// The part between two cycles, both included: the first record is the one at `start`.
 fn cut(trace: &[Record], start: u64, end: u64) -> Option<Vec<Record>> {
     let before = trace.iter().rfind(|record| record.cycle.0 <= start)?;
     let first = Record { cycle: stepscope_core::peripheral::units::Instant(start), ..*before };
@@ -60,7 +60,7 @@ fn cut(trace: &[Record], start: u64, end: u64) -> Option<Vec<Record>> {
 #[test]
 fn exported_files_have_the_bytes_of_the_core() -> Result<()> {
     in_browser(|page| async move {
-        // More rows than one piece has.
+        // More rows than one piece.
         let known = Known::of(
             r#"{"source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":12000},"duration_s":2}}]}]}}}"#,
         )?;
@@ -81,7 +81,7 @@ fn exported_files_have_the_bytes_of_the_core() -> Result<()> {
         let (_, text) = saved(&page, "-line.json").await?;
         assert_eq!(Known::of(&text)?.digest, known.digest, "sent again");
 
-        // The table of packets, dropped on the page: the same bytes at the same times.
+        // The packet table, dropped on the page: the same bytes at the same times.
         let (_, text) = saved(&page, "-packets.csv").await?;
         drop_file(&page, "packets.csv", &text).await?;
         page.until(
@@ -129,7 +129,7 @@ fn tables_match_the_views_and_long_exports_can_be_canceled() -> Result<()> {
         let (_, text) = saved(&page, "-ticks.csv").await?;
         ensure!(text.starts_with("start_cycle,packet,steps0"), "{text}");
 
-        // The answer to the first piece is followed by no other question.
+        // No request follows the reply to the first piece.
         page.js::<Value>(
             "document.querySelector('[data-file$=\".trace\"]').click(); document.getElementById('export-cancel').click(); return null;",
             vec![],

@@ -1,4 +1,4 @@
-//! The framed protocol on the page: frames, replies, and what becomes of them on a noisy line.
+//! The framed protocol on the page: frames, replies, and their outcomes on a noisy line.
 
 use anyhow::{Result, ensure};
 use stepscope_core::inspect::packets::log::RowOutcome;
@@ -12,7 +12,7 @@ use crate::{
 
 const FRAMED: &str = r#"{"line":{"protocol":"framed"}}"#;
 
-/// Classes of the rows of the packets that are on show, by their numbers.
+/// Classes of the visible rows of packets, by their numbers.
 async fn classes(page: &Session) -> Result<Vec<String>> {
     page.eval("[...document.querySelectorAll('#packets tbody tr')].map((row) => row.className)").await
 }
@@ -43,13 +43,13 @@ fn a_framed_line_shows_frames_with_their_ticks_and_replies() -> Result<()> {
         page.pulses().await?;
         page.picture("framed").await?;
 
-        // The first TICKS frame: its bytes, the reply, and all of its ticks.
+        // The first TICKS frame: its bytes, the reply, and all its ticks.
         let first = |row: &&stepscope_core::inspect::packets::log::LoggedPacket| {
             matches!(row.outcome, RowOutcome::Frame(FrameOutcome::Queued(_)))
         };
         let rows = framed.recording.packets.rows();
         let (index, row) = rows.iter().enumerate().find(|(_, row)| first(row)).expect("it queues ticks");
-        // It may stand below what is on show.
+        // It may be below the visible part.
         page.eval::<bool>(&format!(
             "(() => {{ const height = document.querySelector('#packets tbody tr').offsetHeight;
              document.getElementById('packets-scroll').scrollTop = {index} * height; return true; }})()"

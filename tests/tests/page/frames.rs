@@ -1,4 +1,4 @@
-//! The logic view's picture against every record of the trace, also after it was dragged about.
+//! Compares the picture of the logic view with every record of the trace, also after dragging.
 
 use anyhow::{Result, ensure};
 use serde::Deserialize;
@@ -15,15 +15,15 @@ use crate::{
 const ROW_PX: usize = 22;
 /// Width of the labels' column and of the free space at the right.
 const BESIDE_PX: usize = 68 + 26;
-/// Rows of one unfolded channel on a raw line, and the bits of those that are signals but EN, which is the chosen one.
+/// Rows of one expanded channel on a raw line, and the bits of the signals among them, without EN, which is the selected row.
 const ROWS: &[(usize, u32, &str)] = &[(1, 33, "RX"), (4, 16, "DIR 0"), (5, 0, "STEP 0")];
 
-/// A dense train of steps on a line on which one cycle is pulled low while it rests.
+/// A dense series of steps, on a line with a low of one cycle while it is idle.
 const GLITCHED: &str = r#"{"line":{"glitches":[{"start_cycle":1000000,"length_cycles":1,"level":0}]},
     "source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":2000},"speed":{"steps_s":20000}}},
     {"dwell":{"duration_s":0.02}},{"constant":{"distance":{"steps":-1},"speed":{"steps_s":100}}}]}]}}}"#;
 
-/// Where there is ink at the top, in the middle and at the bottom of one row, a character a pixel column.
+/// Whether there is ink at the top, in the middle and at the bottom of a row, one character per pixel column.
 #[derive(Deserialize)]
 struct Row {
     top: String,
@@ -41,8 +41,8 @@ const READ: &str = "
     const top = row * height + 4;
     return { top: line(top), middle: line(top + 7), bottom: line(top + 15) };";
 
-/// What the row must look like by the levels of its columns: a bar where it was high and low, a line where it was
-/// one of them, and an edge in the first column of another level.
+/// The expected picture of a row: a bar if a column has both levels, a line if it has one, and an edge in the
+/// first column of another level.
 fn expected(known: &Known, bit: u32, window: (u64, u64), count: usize) -> Row {
     let trace = &known.recording.trace;
     let mut changes = Changes::default();
@@ -62,7 +62,7 @@ fn expected(known: &Known, bit: u32, window: (u64, u64), count: usize) -> Row {
     row
 }
 
-/// Types the shown time in s and waits until the picture stands.
+/// Types the visible time in s and waits for the picture.
 async fn show(page: &Session, from: &str, to: &str) -> Result<()> {
     page.click("#zoom-fit").await?;
     for (field, text) in [("#window-end", to), ("#window-start", from)] {
@@ -94,7 +94,7 @@ fn the_picture_shows_every_record_dense_or_isolated() -> Result<()> {
         page.choose("#edge-row", "32").await?;
         let last = known.recording.trace.last().map_or(0, |record| record.cycle.0);
         let hz = u64::from(known.scenario.clock_hz);
-        // A glitch of one cycle in a column of many thousand, and trains that fill theirs.
+        // A glitch of one cycle in a column of many thousands, and series of steps that fill their columns.
         let whole = expected(&known, 33, (0, last), 1000).middle;
         ensure!(whole.contains(".#."), "a lone glitch: {whole}");
         ensure!(expected(&known, 0, (0, last), 1000).middle.contains(&"#".repeat(100)), "a dense train");
@@ -109,7 +109,7 @@ fn the_picture_shows_every_record_dense_or_isolated() -> Result<()> {
             show(&page, from, to).await?;
             is_brute_force(&page, &known, window).await?;
         }
-        // Dragged about, and back to the same place.
+        // Dragged, and back to the same position.
         let moved: bool = page
             .js(
                 "const canvas = document.getElementById('pulses');

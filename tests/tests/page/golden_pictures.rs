@@ -1,12 +1,12 @@
-//! What the curves and the pulses look like, held against small pictures in `tests/pictures/`.
+//! Compares pictures of the curves and the pulses with those in `tests/pictures/`.
 //!
-//! Letters are left out, and the boxes have fixed sizes in CSS pixels: fonts differ from machine to machine, and with
-//! them the height of every line of text and the space that is left for a canvas. So the pictures pin lines, bands,
-//! colours and places, and nothing of the letters. What is left to differ between versions of a browser is the edges
-//! of lines; the comparison allows for that, and not for a line that has moved by two pixels.
+//! Text is not drawn, and the boxes have fixed sizes in CSS pixels, because fonts differ between machines, and with
+//! them the height of lines of text and the space for a canvas. So the pictures check lines, bands,
+//! colors and positions. Browsers still differ in the edges
+//! of lines; the comparison allows for that, but not for a line that has moved by two pixels.
 //!
-//! `STEPSCOPE_BLESS=1 cargo xtask test --only page` writes the pictures; look at them before they are committed. Where a
-//! picture differs, what was drawn is kept in `STEPSCOPE_SHOTS`, if that is set.
+//! `STEPSCOPE_BLESS=1 cargo xtask test --only page` writes the pictures; check them before you commit them. If a picture
+//! differs and `STEPSCOPE_SHOTS` is set, the actual picture is stored there.
 
 use std::{cell::Cell, env, fs, path::PathBuf};
 
@@ -18,14 +18,14 @@ use stepscope_core::scenario::presets::PRESETS;
 
 use crate::{bench::in_browser, native::Known, session::Session};
 
-/// Most that the colours may differ by in the mean, of 255.
+/// Maximum mean difference of colors, of 255.
 const MAX_MEAN: f64 = 1.0;
-/// A pixel differs clearly from so much on, in one of its colours.
+/// From this difference of one color on, a pixel differs clearly.
 const CLEAR: u8 = 64;
-/// Most pixels that may differ clearly, of all.
+/// Maximum fraction of pixels that differ clearly.
 const MAX_CLEAR: f64 = 0.004;
 
-/// So many looks in a row must see the same before a picture is written.
+/// Number of equal pictures in a row before one is written.
 const STILL: u32 = 5;
 
 /// A picture's pixels, four bytes each.
@@ -46,7 +46,7 @@ impl Picture {
         Ok(Self { width: info.width, height: info.height, pixels })
     }
 
-    /// A sentence on how another picture differs by more than it may.
+    /// Describes the difference if it exceeds the limits.
     fn difference(&self, other: &Self) -> Option<String> {
         if (self.width, self.height) != (other.width, other.height) {
             return Some(format!(
@@ -66,10 +66,10 @@ impl Picture {
     }
 }
 
-/// No letters on any canvas.
+/// Hides all text on canvases.
 const NO_LETTERS: &str = "CanvasRenderingContext2D.prototype.fillText = () => {};";
 
-/// A canvas as it is drawn now, as a file.
+/// The current picture of a canvas, as a file.
 async fn drawn(page: &Session, canvas: &str) -> Result<Vec<u8>> {
     let url: String = page
         .js("return document.getElementById(arguments[0]).toDataURL('image/png');", vec![json!(canvas)])
@@ -78,7 +78,7 @@ async fn drawn(page: &Session, canvas: &str) -> Result<Vec<u8>> {
     BASE64.decode(base64.as_bytes()).map_err(anyhow::Error::msg)
 }
 
-/// Compares a canvas with the picture of this name once it is drawn, or writes that.
+/// Compares a canvas with the picture of this name once it is drawn, or writes that picture.
 async fn compare(page: &Session, canvas: &str, name: &str, wrong: &mut Vec<String>) -> Result<()> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures");
     let golden = folder.join(format!("{name}.png"));
@@ -90,7 +90,7 @@ async fn compare(page: &Session, canvas: &str, name: &str, wrong: &mut Vec<Strin
         format!("{} can't be read; STEPSCOPE_BLESS=1 writes what is drawn now", golden.display())
     })?;
     let wanted = Picture::read(&wanted)?;
-    // What was drawn before its box had its size is drawn anew; how long that takes says nothing.
+    // A canvas is redrawn when its box has its size, which takes an unknown time.
     let look =
         async || Ok(wanted.difference(&Picture::read(&drawn(page, canvas).await?)?).is_none().then_some(()));
     if page.eventually(name, look).await.is_ok() {
@@ -106,11 +106,11 @@ async fn compare(page: &Session, canvas: &str, name: &str, wrong: &mut Vec<Strin
     Ok(())
 }
 
-/// A canvas that was the same in several looks.
+/// A canvas that was the same in several pictures.
 async fn stands_still(page: &Session, canvas: &str) -> Result<Vec<u8>> {
     let looks = Cell::new((0, Vec::new()));
     page.eventually(&format!("{canvas} stands still"), async || {
-        // What is still to be drawn has its turn before the look.
+        // Pending drawing is done before the picture is taken.
         page.js::<()>("return new Promise((seen) => requestAnimationFrame(() => setTimeout(seen)));", vec![])
             .await?;
         let now = drawn(page, canvas).await?;

@@ -1,4 +1,4 @@
-//! Links that are broken, newer, hostile or too much work: a clear word, and never a blank page.
+//! Broken, newer, hostile or expensive links: a clear message, and never a blank page.
 
 use anyhow::{Context, Result, ensure};
 use miniz_oxide::deflate::compress_to_vec;
@@ -9,7 +9,7 @@ use crate::{
     session::Session,
 };
 
-/// The page with the default motion in it, and a word on the link.
+/// Checks that the page has the default motion, and a message on the link.
 async fn refused(page: &Session, what: &str, fragment: &str, says: &str) -> Result<()> {
     page.open(&format!("#{fragment}")).await?;
     page.until_digest(&Known::of("{}")?.digest).await.with_context(|| what.to_owned())?;
@@ -72,7 +72,7 @@ fn markup_in_a_link_is_only_text() -> Result<()> {
     })
 }
 
-/// More edges than run unasked: 2.2 million steps.
+/// More edges than a run without a confirmation may have: 2.2 million steps.
 const MUCH: &str = r#"{"title":"Two million steps","source":{"motion":{"axes":[{"moves":[
     {"cosine":{"distance":{"steps":2200000},"duration_s":60,"ramp_s":10}}]}]}}}"#;
 
@@ -87,7 +87,7 @@ fn a_link_with_too_much_work_waits_for_confirmation() -> Result<()> {
         ensure!(word.contains("edges") && word.contains("Not run"), "the price is told: {word}");
         let distance = page.field("source.motion.axes[0].moves[0].cosine.distance").await?;
         assert_eq!(distance.value, "2200000");
-        // What would run has been asked of the engine before; one more question is answered after it.
+        // A run would have been requested by now; one more request gets its reply after that.
         page.click("#share").await?;
         page.until(
             "document.getElementById('link-about').textContent.includes('the experiment has not run')",

@@ -1,4 +1,4 @@
-//! Tests share browsers, and none of them meets what another left in one.
+//! Tests share browsers, but no data.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::{
     session::{SHIFT, Session},
 };
 
-/// Leaves something wherever a page can, and waits until it is there.
+/// Stores something in every place available to a page.
 const LEAVE: &str = "
     localStorage.setItem('left', 'behind');
     sessionStorage.setItem('left', 'behind');
@@ -29,7 +29,7 @@ const LEAVE: &str = "
         navigator.serviceWorker.ready,
     ]).then(() => true);";
 
-/// All that a user can find of that, by its name.
+/// Everything that a user finds of it, by name.
 const FOUND: &str = "
     return (async () => ({
         'local storage': localStorage.getItem('left'),
@@ -62,12 +62,12 @@ type Found = BTreeMap<String, Value>;
 
 /// What a user finds before the page's own scripts have run.
 async fn found(page: &Session) -> Result<Found> {
-    // A page without scripts, so that all there is was there before.
+    // A page without scripts, so that everything found was there before.
     page.go("licenses.html").await?;
     page.js(FOUND, vec![]).await
 }
 
-/// Presses a key, and gives which of those beside it were held then.
+/// Presses a key; returns the modifier keys that were held.
 async fn held(page: &Session) -> Result<Vec<String>> {
     page.js::<()>(
         "addEventListener('keydown', (event) => { window.held = ['shiftKey', 'altKey', 'ctrlKey'].filter((key) => event[key]); }); \
@@ -80,7 +80,7 @@ async fn held(page: &Session) -> Result<Vec<String>> {
     page.eventually("a key", async || page.eval::<Option<Vec<String>>>("window.held ?? null").await).await
 }
 
-/// Leaves all of it, a key that is held, and every emulation.
+/// Leaves all of it: data, a held key, and every emulation.
 async fn leave(page: &Session) -> Result<()> {
     page.before_scripts("window.left = 'behind';").await?;
     page.open("").await?;
@@ -113,7 +113,7 @@ async fn leave(page: &Session) -> Result<()> {
     ] {
         page.devtools(method, parameters).await?;
     }
-    // It is what there is to be found: nothing here is left out of sight.
+    // It can be found: nothing is hidden from this test.
     let now: Found = page.js(FOUND, vec![]).await?;
     for (name, value) in [
         ("local storage", json!("behind")),
@@ -156,7 +156,7 @@ fn a_visitor_finds_nothing_of_the_previous_visitor() -> Result<()> {
         let complaints = next.complaints().await?;
         ensure!(complaints.is_empty(), "{complaints:?}");
 
-        // The page at work: it begins with its own first scenario and offers the guide.
+        // The page works: it opens its default scenario and offers the guide.
         next.open("").await?;
         ensure!(next.visible("#welcome").await?, "the page knows the visitor");
         assert_eq!(held(&next).await?, [""; 0], "a key is held that this visitor never pressed");

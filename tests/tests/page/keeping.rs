@@ -1,5 +1,5 @@
-//! Nothing that a visitor typed is lost: over a reload, behind a link, beside a field that is gone, by a button of the
-//! form's structure, by another kind, by another tab.
+//! No input is lost: by a reload, a link, a removed field, a structure button, another kind, or another
+//! tab.
 
 use anyhow::{Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
@@ -29,7 +29,7 @@ fn invalid_work_survives_a_reload_and_has_no_link() -> Result<()> {
         assert_eq!(page.field("bus.queue_depth").await?.value, "7");
         assert_eq!(page.field(DISTANCE).await?.value, "0");
         assert_eq!(page.text("#link-message").await?, "");
-        // The views show what ran last, dimmed.
+        // The views show the last run, dimmed.
         let last = Known::of(r#"{"bus":{"queue_depth":7}}"#)?;
         page.until_equal("document.getElementById('digest').textContent", &last.digest.into()).await?;
         page.ready().await?;
@@ -75,7 +75,7 @@ fn a_removed_field_with_an_error_blocks_nothing() -> Result<()> {
     })
 }
 
-/// Types into a field, then presses a button of the form's structure by its key, as a user who does not wait does.
+/// Types into a field, then immediately presses a structure button by its key.
 async fn edit_and_press(page: &Session, path: &str, text: &str, button: &str) -> Result<()> {
     page.fill(path, text).await?;
     page.press(&format!("#fields button[aria-label='{button}']"), &ENTER.to_string()).await
@@ -150,7 +150,7 @@ fn structure_buttons_act_on_the_current_form() -> Result<()> {
             let value = page.field(&found).await?.value;
             ensure!(value == expected, "{button} after {path}: {found} is {value}, not {expected}");
         }
-        // What is no number yet stays where it was typed, or goes where its part goes.
+        // Invalid text stays in its field, or moves with its part.
         page.open(&format!("#{}", link_of(&motion(&axis(2), ""))?)).await?;
         edit_and_press(&page, &distance(0, 1), "zz", "Add move to axis 0").await?;
         assert_eq!(page.field(&distance(0, 1)).await?.value, "zz");
@@ -210,7 +210,7 @@ fn a_changed_preset_is_labeled_until_it_has_a_name() -> Result<()> {
     })
 }
 
-/// Types 77, and 0 as soon as what follows from 77 is reported: before it is run.
+/// Types 77, and 0 as soon as the results of 77 are reported, before it is run.
 const BETWEEN_RUNS: &str = "const input = document.querySelector(arguments[0]);
     const note = document.querySelector('[data-note]');
     const type = (text) => { input.value = text; input.dispatchEvent(new Event('input')); };
@@ -230,7 +230,7 @@ fn invalid_input_dims_the_figures_of_the_last_run() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         let (note, derived) = (page.text("[data-note]").await?, page.text("#derived").await?);
-        // Each key is judged: what stood between the last run and the refused number is not told.
+        // Each key is validated: values between the last run and the refused number are not shown.
         page.fill(DISTANCE, "3200").await?;
         page.js::<bool>(BETWEEN_RUNS, vec![field(DISTANCE).into()]).await?;
         page.until(&format!("{NOTE}.classList.contains('stale')")).await?;
@@ -248,7 +248,7 @@ fn a_tab_keeps_its_work_and_offers_that_of_another() -> Result<()> {
         page.fill(DISTANCE, "1234").await?;
         page.until(&format!("{SAVED}.includes('1234')")).await?;
         page.ready().await?;
-        // A second tab, as the browser makes it: storage of all is shared, that of the tab is not.
+        // A second tab, as the browser opens it: it shares local storage, but not session storage.
         let own = page.client.window().await?;
         let second = page.client.new_window(true).await?;
         page.client.switch_to_window(second.handle).await?;
@@ -294,7 +294,7 @@ fn the_layout_does_not_shift_between_press_and_release() -> Result<()> {
             .then(PointerAction::MoveTo { duration: None, x, y })
             .then(PointerAction::Down { button: MOUSE_BUTTON_LEFT });
         page.actions(mouse).await?;
-        // What was typed is judged meanwhile, and too little: its message waits for the release.
+        // The input is validated meanwhile and is too small: its message waits for the release.
         page.until("document.querySelector('#status').textContent.startsWith('not run') || document.documentElement.dataset.state === 'ready'").await?;
         assert_eq!(page.eval::<[f64; 2]>(&middle).await?, before, "the field is where it was pressed");
         let up = MouseActions::new("mouse".into()).then(PointerAction::Up { button: MOUSE_BUTTON_LEFT });
@@ -310,7 +310,7 @@ fn experiments_are_saved_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.open("").await?;
         page.fill(DISTANCE, "1234").await?;
         page.ready().await?;
-        // The panel's script comes after the panel: until then nothing can be pressed, but the name can be typed.
+        // The panel's script loads after the panel: until then nothing can be pressed, but the name can be typed.
         assert!(page.eval::<bool>("!!document.getElementById('experiment-list').closest('[inert]') && document.getElementById('experiment-save').disabled").await?);
         page.click("#experiments").await?;
         page.until_equal("document.activeElement.id", &serde_json::json!("experiment-name")).await?;
@@ -325,13 +325,13 @@ fn experiments_are_saved_by_name_and_undo_survives_a_reload() -> Result<()> {
 
         page.open("").await?;
         page.ready().await?;
-        // Listed beside the presets, and opened with its name.
+        // Listed next to the presets, and opened by its name.
         page.preset("own:Rig").await?;
         page.until_digest(&Known::of(&with_distance(1234.0))?.digest).await?;
         assert_eq!(page.field("title").await?.value, "Rig");
         page.click("#undo").await?;
         page.until_digest(&Known::of("{}")?.digest).await?;
-        // The step before is of the visit before.
+        // The previous undo step is from the previous visit.
         page.click("#undo").await?;
         page.until_digest(&Known::of(&with_distance(1234.0))?.digest).await?;
 
@@ -384,7 +384,7 @@ fn damaged_storage_does_not_stop_the_page() -> Result<()> {
                     .map_err(|error| error.context(format!("{place} {key}: {text}")))?;
             }
         }
-        // Kept by an earlier version: its names of then are read.
+        // Stored by an earlier version: its former names are read.
         let old = r#"[{"title":"Old","bus":{"pulses":"staggered","settle_cycles":60}}]"#;
         page.eval::<bool>(&format!("(localStorage.setItem('stepscope.experiments', {old:?}), true)")).await?;
         page.open("").await?;

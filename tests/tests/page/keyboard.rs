@@ -1,4 +1,4 @@
-//! The main job by keys alone: no pointer, and no script that moves the focus.
+//! The main task with keys only: without a pointer, and without scripts that move the focus.
 
 use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource as _, KeyAction, KeyActions};
@@ -16,21 +16,21 @@ const TAB: char = '\u{e004}';
 const ALT: char = '\u{e00a}';
 const RIGHT: char = '\u{e014}';
 pub(crate) const DOWN: char = '\u{e015}';
-/// More presses of Tab than the page has places for the focus.
+/// More presses of Tab than the page has focusable elements.
 const MOST: usize = 400;
 
-/// Where the focus is, and whether one can see it.
+/// The focused element, and whether the focus is visible.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 struct Focus {
-    /// Its id, path in the scenario or name; empty where the focus is nowhere.
+    /// Its id, path in the scenario or name; empty without a focus.
     name: String,
     /// Its number among all elements of the document.
     order: i64,
     /// Width of its outline in CSS pixels, 0 for none.
     outline: f64,
-    /// Contrast of the outline to the ground behind it.
+    /// Contrast of the outline with the background behind it.
     contrast: f64,
-    /// It lies in the window, and nothing covers it.
+    /// It is within the window, and nothing covers it.
     seen: bool,
 }
 
@@ -41,7 +41,7 @@ const FOCUS: &str = "
     const part = (c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4);
     const light = ({ r, g, b }) => 0.2126 * part(r) + 0.7152 * part(g) + 0.0722 * part(b);
     let ground = { r: 255, g: 255, b: 255, a: 1 };
-    // The outline lies outside of the element, on what is behind it.
+    // The outline is outside of the element, on the background behind it.
     for (let at = node.parentElement; at; at = at.parentElement) {
         const colour = rgba(getComputedStyle(at).backgroundColor);
         if (colour.a === 1) { ground = colour; break; }
@@ -64,7 +64,7 @@ async fn focus(page: &Session) -> Result<Focus> {
     page.js(FOCUS, vec![]).await
 }
 
-/// Presses a key, with others held down.
+/// Presses a key while others are held.
 pub(crate) async fn key(page: &Session, held: &[char], value: char) -> Result<()> {
     let mut keys = KeyActions::new("keys".into());
     for &value in held {
@@ -84,7 +84,7 @@ async fn type_text(page: &Session, text: &str) -> Result<()> {
     Ok(())
 }
 
-/// Goes on by Tab, or back by Shift and Tab, to the place with this name; on every place between the focus can be seen.
+/// Presses Tab, or Shift and Tab, until the element with this name has the focus; the focus is always visible.
 pub(crate) async fn go(page: &Session, held: &[char], name: &str) -> Result<()> {
     let mut seen = Vec::new();
     for _ in 0..MOST {
@@ -98,7 +98,7 @@ pub(crate) async fn go(page: &Session, held: &[char], name: &str) -> Result<()> 
     anyhow::bail!("{name} is not reached by Tab; these are: {seen:?}")
 }
 
-/// The focus, which is somewhere and can be seen.
+/// The focus, which exists and is visible.
 async fn visible_focus(page: &Session) -> Result<Focus> {
     let at = focus(page).await?;
     ensure!(!at.name.is_empty(), "the focus is lost");
@@ -107,7 +107,7 @@ async fn visible_focus(page: &Session) -> Result<Focus> {
     Ok(at)
 }
 
-/// The focus has not left its place, though the page was drawn anew.
+/// The focus has not moved, although the page was redrawn.
 async fn still(page: &Session, name: &str) -> Result<()> {
     let at = visible_focus(page).await?;
     ensure!(at.name == name, "the focus was on {name} and is on {}", at.name);
@@ -172,7 +172,7 @@ fn an_experiment_can_be_done_with_keys_only() -> Result<()> {
         page.until("document.getElementById('copy-link').textContent === 'Copied'").await?;
         still(&page, "copy-link").await?;
         let link = page.clipboard().await?;
-        // It is no preset any more, and says so.
+        // It is no longer a preset, and its label shows that.
         let title = scenario["title"].as_str().context("a preset has a title")?;
         scenario["title"] = json!(format!("changed from {title}"));
         scenario["note"] = json!("");
@@ -188,14 +188,14 @@ fn tab_reaches_every_control_in_the_order_of_the_page() -> Result<()> {
         page.open("").await?;
         for (preset, width) in [("", 1440), ("driver-timing-broken", 1440), ("", 390)] {
             page.screen(width, 900).await?;
-            // By a link: after a click Tab would go on from where that was.
+            // By a link, because after a click Tab would continue from there.
             let link = match PRESETS.iter().find(|each| each.id == preset) {
                 Some(preset) => format!("#{}", Known::preset(preset)?.link),
                 None => String::new(),
             };
             page.open(&link).await?;
             let what = format!("{preset} at {width} px");
-            // Of several buttons in a group that one moves through by arrows, one is a place for Tab.
+            // In a group of buttons with arrow keys, only one is reached by Tab.
             let wanted: usize = page
                 .eval(
                     "(window.wanted = [...document.querySelectorAll('a[href], button, input, select, textarea, summary, \
@@ -223,7 +223,7 @@ fn tab_reaches_every_control_in_the_order_of_the_page() -> Result<()> {
                 ensure!(places.len() < MOST, "{what}: Tab never ends");
             }
             let names: Vec<&str> = places.iter().map(|place| place.name.as_str()).collect();
-            // What came or went meanwhile, such as a message, is not demanded.
+            // Elements that appeared or disappeared meanwhile, such as messages, are not required.
             let missed: Vec<String> = page
                 .eval(
                     "wanted.filter((node) => node.isConnected && !reached.has(node)).map((node) => node.outerHTML.slice(0, 99))",

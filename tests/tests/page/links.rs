@@ -1,4 +1,4 @@
-//! Links: one visitor's experiment in another visitor's browser.
+//! Links: the experiment of one user in the browser of another.
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
@@ -13,7 +13,7 @@ use crate::{
     session::Session,
 };
 
-/// Opens Share, copies, and gives what is on the clipboard then.
+/// Opens Share, copies, and returns the clipboard.
 pub(crate) async fn copied(page: &Session) -> Result<String> {
     page.allow_clipboard().await?;
     page.click("#share").await?;
@@ -23,7 +23,7 @@ pub(crate) async fn copied(page: &Session) -> Result<String> {
     page.clipboard().await
 }
 
-/// The link that the page gives of a scenario's run.
+/// The page's link of a scenario's run.
 pub(crate) fn whole(page: &Session, known: &Known) -> String {
     let proof = RunFingerprint::of(vec![Fingerprint::of(&known.recording.trace)]);
     format!("{}#{}", page.address(), with_part(known.link.clone(), "d", &proof.emit()))
@@ -116,7 +116,7 @@ fn a_link_pasted_into_the_address_opens_and_can_be_undone() -> Result<()> {
         page.click("#undo").await?;
         page.until_digest(&own.digest).await?;
         let (mut now, mut then) = (page.form().await?, form);
-        // The same value, written as the page writes it.
+        // The same value, in the page's own format.
         ensure!(now.remove(DISTANCE) == Some(json!("800")) && then.remove(DISTANCE).is_some());
         assert_eq!(now, then);
         page.until_equal("location.hash", &json!(format!("#{}", own.link))).await
@@ -133,13 +133,13 @@ fn work_is_restored_after_a_visit_with_a_link() -> Result<()> {
         page.until_digest(&own.digest).await?;
         page.open(&format!("#{}", shared.link)).await?;
         page.until_digest(&shared.digest).await?;
-        // What it says is reported once, and can be closed.
+        // Its message is shown once, and can be closed.
         page.until("document.getElementById('link-message').textContent.startsWith('Shared with you')")
             .await?;
         page.click("#link-message .close").await?;
         ensure!(!page.visible("#link-message").await?);
         page.until(&format!("location.hash.startsWith('#{}')", shared.link)).await?;
-        // The address is the page's own once the scenario has stood for a while.
+        // The address becomes the page's own a short time after an edit.
         page.until("history.state?.own === false").await?;
         page.client.refresh().await?;
         page.until_digest(&shared.digest).await?;

@@ -15,7 +15,7 @@ use crate::{
     session::Session,
 };
 
-/// Long enough to be stopped on the way, on any machine.
+/// Long enough to be stopped before its end, on any machine.
 pub(crate) const LONG: &str = r#"{"line":{"protocol":"framed","host":{"attempts":40}},"bus":{"step_period_cycles":3200},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":27000},"duration_s":60}}]}]}}}"#;
 /// Two controllers, the first of two channels.
@@ -23,7 +23,7 @@ const TWO: &str = r#"{"line":{"protocol":"framed","host":{"attempts":40}},"bus":
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":200},"duration_s":1}}]},{"moves":[{"cosine":{"distance":{"steps":-300},"duration_s":1}}]}]}},
     "controllers":[{"address":1,"bus":{"channels":1,"step_period_cycles":3200,"queue_depth":200},"axes":[{"moves":[{"cosine":{"distance":{"steps":100},"duration_s":1}}]}]}]}"#;
 
-/// The cells of the table that has device and model side by side, after its head.
+/// The cells of the table with device and model, without its header.
 #[derive(Debug, Deserialize, PartialEq)]
 struct Beside(Vec<[String; 3]>);
 
@@ -46,14 +46,14 @@ fn a_stream_is_confirmed_with_the_positions_of_the_model() -> Result<()> {
         let expected =
             Beside(vec![both("state", "READY"), both("ticks done", &ticks), both("steps moved", &steps)]);
         assert_eq!(beside(&page).await?, expected);
-        // What the page tells of its port: opened at the line's rate, and closed.
+        // The state of the port: opened at the line's rate, and closed.
         assert_eq!(page.eval::<(Vec<u32>, u32)>("[peer.opened, peer.closed]").await?, (vec![115_200], 1));
-        // A row an exchange, the first ones last: STATUS, POSITIONS, TICKS.
+        // One row per exchange, the first ones at the end: STATUS, POSITIONS, TICKS.
         let kinds: Vec<String> =
             page.eval("[...document.querySelectorAll('.live-replies tbody tr')].map((row) => row.cells[3].textContent).toReversed()").await?;
         let replies: Vec<&String> = kinds.iter().filter(|kind| *kind != "no reply").collect();
         assert_eq!(replies[..3], ["ACK STATUS", "ACK POSITIONS", "ACK TICKS"]);
-        // Each frame has one: its reply, or that none came in time.
+        // Each frame has one: its reply, or a timeout.
         ensure!(report.contains(&format!("frames {} ", kinds.len())), "{} rows\n{report}", kinds.len());
         axe::look(&page, "the report", &mut wrong).await?;
         page.picture("device").await?;
@@ -118,7 +118,7 @@ fn stop_during_a_stream_is_confirmed_and_reported() -> Result<()> {
         start(&page).await?;
         page.until(&format!("Number({STANDING}.match(/(\\d+) ticks accepted/)?.[1] ?? 0) > 20")).await?;
         ensure!(page.eval::<bool>("document.getElementById('live-close').disabled").await?);
-        // Who leaves the page is asked.
+        // Leaving the page needs a confirmation.
         let asks = "!dispatchEvent(new Event('beforeunload', { cancelable: true }))";
         ensure!(page.eval::<bool>(asks).await?);
         page.click("#live-stop").await?;
@@ -128,7 +128,7 @@ fn stop_during_a_stream_is_confirmed_and_reported() -> Result<()> {
         for part in ["STOP is acknowledged", "state STOPPED", "is the first that is not confirmed"] {
             ensure!(report.contains(part), "{part} is not in\n{report}");
         }
-        // Also where nothing is sent: to a device that somebody else may have left moving.
+        // Even if nothing is sent: another program may have left the device moving.
         page.click("#live-stop").await?;
         page.until("peer.closed === 2").await?;
         page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
@@ -215,7 +215,7 @@ fn unavailable_buttons_are_disabled_with_a_reason() -> Result<()> {
             }
         }
 
-        // What is not answered cannot be confirmed; but its controllers can answer a host.
+        // Without replies nothing can be confirmed, but the controllers can reply to a host.
         for (json, why) in [
             ("{}", "choose the framed protocol"),
             (

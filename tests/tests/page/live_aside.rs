@@ -1,5 +1,5 @@
-//! The dialog Device put aside (LIVE H4): the replies in the packets view as they come, STOP always in sight, the page in use; and what a
-//! session of the soft device shows and leaves.
+//! The page behind the dialog Device (LIVE H4): replies are listed as they arrive, STOP stays visible, the page can be used.
+//! Also the results of a session of the simulated device.
 
 use anyhow::{Result, ensure};
 use serde_json::{Value, json};
@@ -15,7 +15,7 @@ use crate::{
 
 pub(crate) const ROWS: &str = "document.querySelectorAll('#view-packets .live-replies tbody tr').length";
 const MODAL: &str = "document.querySelector('dialog.live').matches(':modal')";
-/// Who is at the centre of STOP gets its press.
+/// The element at the center of STOP, which gets its press.
 pub(crate) const STOP_IN_SIGHT: &str = "(() => {
     const stop = document.getElementById('live-stop');
     const { left, top, width, height } = stop.getBoundingClientRect();
@@ -46,20 +46,20 @@ fn replies_are_listed_during_a_stream_and_stop_is_visible() -> Result<()> {
             page.picture(&format!("device-aside-{width}")).await?;
             axe::none(&wrong)?;
 
-            // Both tables have the view in turn.
+            // Both tables use the view in turn.
             page.click("#packets-of-model").await?;
             ensure!(page.visible("#packets").await? && !page.visible("#view-packets .live-replies").await?);
             page.click("#packets-of-device").await?;
             ensure!(!page.visible("#packets").await? && page.visible("#view-packets .live-replies").await?);
 
-            // There is one dialog, which its button brings in front.
+            // There is one dialog, which its button brings to the front.
             page.click("#device").await?;
             page.until(MODAL).await?;
             assert_eq!(page.eval::<u32>("document.querySelectorAll('dialog.live').length").await?, 1);
             page.click("#live-aside").await?;
             page.until(&format!("!{MODAL}")).await?;
 
-            // Escape is STOP wherever it is pressed.
+            // Escape is STOP everywhere.
             page.press("#packets-of-model", "\u{e00c}").await?;
             page.until(ENDED).await?;
             page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
@@ -109,7 +109,7 @@ fn a_reopened_dialog_shows_the_current_experiment() -> Result<()> {
         page.until("peer.opened.length === 2").await?;
         assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, [115_200, 57_600]);
         page.until("peer.closed === 2").await?;
-        // Nor is it about what was sent last where its own button brings it back.
+        // The dialog does not show the last stream, either, when its own button opens it.
         page.click("#packets-of-model").await?;
         page.fill("line.baud", "38400").await?;
         page.ready().await?;
@@ -127,7 +127,7 @@ fn a_simulated_device_shows_positions_and_saves_its_times() -> Result<()> {
         page.click("[name=live-role][value=serve]").await?;
         start(&page).await?;
         page.until("peer.told.some(({ reported }) => reported?.verified)").await?;
-        // It stood at its beginning, and moved.
+        // It started at its initial position, and moved.
         let moved = "new Set(document.querySelector('#live-curves polyline')?.getAttribute('points').split(' ').map((at) => at.split(',')[1])).size > 10";
         page.until(moved).await?;
         page.until("document.getElementById('live-curves').textContent.endsWith('from 0 to 400 steps.')")
@@ -136,7 +136,7 @@ fn a_simulated_device_shows_positions_and_saves_its_times() -> Result<()> {
         axe::look(&page, "the soft device", &mut wrong).await?;
         page.picture("device-served").await?;
         axe::none(&wrong)?;
-        // Also aside.
+        // Also behind the page.
         page.click("#live-aside").await?;
         page.until(&format!("!{MODAL}")).await?;
         page.click("#live-end").await?;
@@ -157,7 +157,7 @@ fn a_simulated_device_shows_positions_and_saves_its_times() -> Result<()> {
         let began = file["started_unix_ms"].as_f64().unwrap_or_default();
         ensure!(began >= before, "{before} {began}");
         let rows = |name: &str| file[name].as_array().cloned().unwrap_or_default();
-        // As many frames as the host sent, each answered.
+        // The same number of frames as the host sent, each with a reply.
         let frames: usize = page
             .eval(
                 "peer.told.findLast(({ reported }) => reported).reported.text.match(/frames (\\d+)/)[1] * 1",

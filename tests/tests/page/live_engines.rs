@@ -1,5 +1,5 @@
 //! The dialog Device in every engine, with a mock of `navigator.serial` (`device`): `cargo xtask test --only engines`. An engine
-//! that cannot do it says why before anything is opened.
+//! without support states the reason before anything is opened.
 
 use anyhow::{Result, ensure};
 use serde_json::json;
@@ -12,13 +12,13 @@ use crate::{
     session::Session,
 };
 
-/// Whether the engine moves both streams to where a worker would have them.
+/// Whether the engine can transfer both streams to a worker.
 const MOVES: &str = "
     const { readable, writable } = new TransformStream();
     const { port1 } = new MessageChannel();
     try { port1.postMessage([readable, writable], [readable, writable]); return true; } catch { return false; }";
 
-/// The dialog's buttons are off, and it and they say so.
+/// The dialog's buttons are disabled, and the dialog and its button state the reason.
 async fn refused(page: &Session, why: &str) -> Result<()> {
     page.click("#device").await?;
     page.until(&format!("{ABOUT}.startsWith({})", json!(why))).await?;
@@ -39,7 +39,7 @@ async fn all(page: Session) -> Result<()> {
     let link = format!("#{}", known.link);
     page.open(&link).await?;
     let has_serial: bool = page.eval("'serial' in navigator").await?;
-    // Firefox has it from some version on.
+    // Newer versions of Firefox support it.
     ensure!(
         engine == Browser::Firefox || has_serial == (engine == Browser::Chromium),
         "{engine:?}: {has_serial}"

@@ -1,7 +1,7 @@
-//! The dialog Device in Chromium on a port of the system, with no mock (LIVE H6): `stepscope serve`, or behind socat `stepscope send`,
-//! has one end of a pseudo-terminal, and the other lies in the place of `/dev/ttyS0`, in a mount namespace that only this Chromium and its driver
-//! are in. There a policy allows its ports to the page, so that the dialog offers the port without the browser's chooser,
-//! which no program can answer. `cargo xtask test --only engines` runs it where the machine can do that, and says so where not.
+//! The dialog Device in Chromium on a system port, without a mock (LIVE H6). `stepscope serve` or, behind socat, `stepscope
+//! send` has one end of a pseudo-terminal. The other end replaces `/dev/ttyS0` in a mount namespace of this Chromium and its driver.
+//! A policy allows the port, so the dialog offers it without the browser's chooser, which no program can operate.
+//! `cargo xtask test --only engines` runs this test if the machine supports it, and otherwise reports why not.
 
 use std::{fs, process::Command};
 
@@ -18,8 +18,8 @@ use crate::{
     session::Session,
 };
 
-/// In a mount namespace of its own: the pseudo-terminal's path, the policy and the driver are given. The last program that is in
-/// it takes all of it along.
+/// Runs in its own mount namespace, with the pseudo-terminal's path, the policy and the driver as arguments. The namespace ends
+/// with its last program.
 const NAMESPACE: &str = r#"
     mount --bind "$1" /dev/ttyS0 &&
     mount -t tmpfs none /etc/chromium &&
@@ -27,11 +27,11 @@ const NAMESPACE: &str = r#"
     printf %s "$2" > /etc/chromium/policies/managed/stepscope.json &&
     exec "$3" --port=0"#;
 
-/// Whether the port is closed, as far as the page's own ports tell.
+/// Whether the port is closed, by the state of the page's own ports.
 const CLOSED: &str =
     "return navigator.serial.getPorts().then((ports) => ports.every(({ readable }) => readable === null));";
 
-/// A device of the scenario, until the host at its pseudo-terminal goes.
+/// A device of the scenario, until its host closes the pseudo-terminal.
 fn device(folder: &Folder, json: &str) -> Result<Program> {
     let scenario = folder.0.join("scenario.json");
     fs::write(&scenario, json)?;
@@ -40,11 +40,11 @@ fn device(folder: &Folder, json: &str) -> Result<Program> {
     Program::start(&serve, Says::Path("pty:")).context("the device")
 }
 
-/// A pseudo-terminal of two ends, and their paths.
+/// A pseudo-terminal with two ends, and their paths.
 fn pair() -> Result<(Program, String, String)> {
     let mut socat = Command::new("socat");
     socat.args(["-d", "-d", "pty,raw,echo=0", "pty,raw,echo=0"]);
-    // The second is reported a moment after the first.
+    // The second one is reported a moment after the first.
     let socat = Program::start(&socat, Says::Path("starting data transfer loop")).context("socat")?;
     let heard = socat.heard();
     let mut ends = heard.iter().filter_map(|line| Some(line.split_once("PTY is ")?.1.to_owned()));
@@ -52,7 +52,7 @@ fn pair() -> Result<(Program, String, String)> {
     Ok((socat, one, other))
 }
 
-/// Sends the scenario's ticks to this end; what is said of it, once all is verified.
+/// Sends the scenario's ticks to this end; returns the output, once all is verified.
 fn sent(folder: &Folder, json: &str, end: &str) -> Result<String> {
     let scenario = folder.0.join("scenario.json");
     fs::write(&scenario, json)?;
@@ -63,7 +63,7 @@ fn sent(folder: &Folder, json: &str, end: &str) -> Result<String> {
     Ok(said)
 }
 
-/// Chromium's driver in a namespace where the page at this address may have the port.
+/// Chromium's driver in a namespace that allows the port to the page at this address.
 fn driver(terminal: &str, page: &str) -> Result<Program> {
     let policy = json!({ "SerialAllowAllPortsForUrls": [page.trim_end_matches('/')] });
     let mut driver = Command::new("unshare");
@@ -72,7 +72,7 @@ fn driver(terminal: &str, page: &str) -> Result<Program> {
     Program::start(&driver, Says::Line("started successfully on port ")).context("Chromium's driver")
 }
 
-/// Opens the page with the scenario, takes the port that it may have, and starts.
+/// Opens the page with the scenario, selects the allowed port, and starts.
 async fn start_as(page: &Session, known: &Known, role: &str) -> Result<()> {
     page.open(&format!("#{}", known.link)).await?;
     page.click("#device").await?;
@@ -99,7 +99,7 @@ fn a_stream_over_a_system_port_is_verified_by_the_device() -> Result<()> {
         page.until("!document.getElementById('live-close').disabled").await?;
         verified(&page, &known).await?;
         ensure!(page.js::<bool>(CLOSED, vec![]).await?, "the port is not given back");
-        // The device ends as its host goes, and says where it stands.
+        // The device ends with its host, and reports its positions.
         let said = async || Ok(device.heard().into_iter().find(|line| line.starts_with("positions ")));
         let end = page.eventually("the device's end", said).await?;
         assert_eq!(end, format!("positions {}", positions(&known).join(" ")));

@@ -1,4 +1,4 @@
-//! Raw packets from the page, with a lead and unanswered (LIVE H4): the other end of the mock's port is our soft device.
+//! Raw packets from the page, with a lead and without replies (LIVE H4), to a simulated device at the mock's port.
 
 use anyhow::{Context as _, Result, ensure};
 use serde::Deserialize;
@@ -13,16 +13,16 @@ use crate::{
     session::{Session, field},
 };
 
-/// Ticks of 20 ms, two channels and an address. What the queue holds is longer than a busy machine is late.
+/// Ticks of 20 ms, two channels and an address. The queue lasts longer than the delays of a busy machine.
 const SHORT: &str = r#"{"line":{"protocol":"raw","address":7},
     "bus":{"channels":2,"step_period_cycles":3200,"queue_depth":250,"self_test_cycles":0},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":400},"duration_s":1}}]},{"moves":[{"cosine":{"distance":{"steps":-300},"duration_s":1}}]}]}}}"#;
-/// Long enough to be stopped on the way, on any machine.
+/// Long enough to be stopped before its end, on any machine.
 const LONG: &str = r#"{"line":{"protocol":"raw"},"bus":{"step_period_cycles":3200,"queue_depth":250,"self_test_cycles":0},
     "source":{"motion":{"axes":[{"moves":[{"cosine":{"distance":{"steps":9000},"duration_s":20}}]}]}}}"#;
 const LEAD_NS: u64 = 200_000_000;
 
-/// How the controller at the other end stood last.
+/// The last reported state of the controller at the other end.
 #[derive(Debug, Deserialize)]
 struct Peer {
     positions: Vec<i32>,
@@ -36,7 +36,7 @@ async fn peer(page: &Session) -> Result<Peer> {
     page.eval(PEER).await
 }
 
-/// Chooses the port, starts, and waits until some packets are sent.
+/// Selects the port, starts, and waits until some packets are sent.
 async fn start_long(page: &Session) -> Result<()> {
     start(page).await?;
     page.until(&format!("Number({STANDING}.match(/^(\\d+) of/)?.[1] ?? 0) > 20")).await
@@ -66,12 +66,12 @@ fn raw_packets_are_executed_but_not_reported_as_verified() -> Result<()> {
         ] {
             ensure!(report.contains(&part), "{part} is not in\n{report}");
         }
-        // What the page says of the lateness it says of the motor, too.
+        // The reported lateness applies to the motor, too.
         assert_eq!(
             report.contains("the motor must have stopped before"),
             said.contains("The motor stopped before")
         );
-        // The motion of the model, packet by packet, whenever they came.
+        // The motion of the model, packet by packet, regardless of their times.
         let steps = positions(&known);
         page.until_equal(&format!("{PEER}?.positions.map(String)"), &json!(steps)).await?;
         let Peer { faults, .. } = peer(&page).await?;
@@ -88,7 +88,7 @@ fn raw_packets_are_executed_but_not_reported_as_verified() -> Result<()> {
 fn stop_ends_raw_packets_and_the_device_finishes_its_queue() -> Result<()> {
     in_browser(|page| async move {
         let known = open_beside(&page, (LONG, "serve", true)).await?;
-        // Nothing is to be stopped, and a raw line has no STOP that could be sent all the same.
+        // There is nothing to stop, and a raw line has no STOP.
         page.click("#live-choose").await?;
         page.until("!document.getElementById('live-start').disabled").await?;
         ensure!(page.eval::<bool>("document.getElementById('live-stop').disabled").await?);
@@ -103,7 +103,7 @@ fn stop_ends_raw_packets_and_the_device_finishes_its_queue() -> Result<()> {
         ensure!(said.contains("a raw line has no STOP, and the device still executes its queue"), "{said}");
         let report: String = page.eval(REPORT).await?;
         ensure!(report.contains("stopped sending: queued packets still run"), "{report}");
-        // What was sent is done, and no more.
+        // Everything that was sent is executed, and no more.
         page.until(&format!("{PEER}.ticks_done === {sent}")).await?;
         let ticks = known.experiment.ticks_of(0).get(..sent as usize).unwrap_or_default();
         let steps = |tick: &u8| i32::from(tick & 0x7f) * if tick & 0x80 == 0 { -1 } else { 1 };
@@ -128,7 +128,7 @@ fn raw_packets_clear_the_replies_of_an_earlier_stream() -> Result<()> {
         page.click("#live-start").await?;
         page.until("peer.opened.length === 2").await?;
         assert_eq!(page.eval::<u32>(rows).await?, 0);
-        // The packets of the model are what is sent.
+        // The packets of the model are sent.
         ensure!(page.visible("#packets").await? && !page.visible("#view-packets .live-replies").await?);
         page.until("peer.closed === 2").await?;
         page.click("#live-close").await?;

@@ -1,5 +1,5 @@
-//! STOP first of all (LIVE H4): in reach whatever opens in front, as the stream went whatever becomes of the experiment, and a part of
-//! the page that fails leaves no button without anybody behind it.
+//! STOP has priority (LIVE H4): it is reachable in front of every dialog, and uses the settings of the stream even if the
+//! experiment changes. After the failure of a worker no button stays without a function.
 
 use anyhow::{Result, ensure};
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ use crate::{
 };
 
 const ESCAPE: &str = "\u{e00c}";
-/// A press that follows another one, but at leisure.
+/// A second press after a pause, which is no double press.
 const PRESS_START: &str = "document.getElementById('live-start').click() ?? null";
 const HOME: &str = "document.getElementById('live-stop').parentElement.className === 'live-actions'";
 
@@ -25,8 +25,8 @@ async fn drop_file(page: &Session, name: &str, text: &str) -> Result<()> {
     page.js::<bool>(script, vec![json!(name), json!(text)]).await.map(drop)
 }
 
-/// From here on the orders to send come by here: `window.own` is the worker that has the page's port, `window.spoil` what
-/// becomes of its orders.
+/// Intercepts later messages to workers: `window.own` is the worker with the page's port, `window.spoil` changes
+/// its messages.
 const OWN: &str = "(() => {
     const post = Worker.prototype.postMessage;
     Worker.prototype.postMessage = function (data, given) {
@@ -77,7 +77,7 @@ fn stop_uses_the_settings_of_the_stream_until_confirmed() -> Result<()> {
         page.eval::<Value>("peer.lose() ?? null").await?;
         page.until(ENDED).await?;
         page.until(&format!("{SAID}.startsWith('Not verified: the port is lost')")).await?;
-        // An experiment that could not be sent, and could not be stopped.
+        // An experiment that cannot be sent or stopped.
         drop_file(&page, "other.json", OTHER).await?;
         page.until_digest(&Known::of(OTHER)?.digest).await?;
         page.click("#live-aside").await?;
@@ -88,7 +88,7 @@ fn stop_uses_the_settings_of_the_stream_until_confirmed() -> Result<()> {
         );
         page.click("[name=live-role][value=serve]").await?;
         ensure!(page.visible("#live-stop").await?);
-        // The dialog that comes next knows it, and Escape is STOP before it closes that.
+        // The next dialog has the same state, and Escape is STOP before it closes the dialog.
         page.click("#live-close").await?;
         page.until("document.querySelector('dialog.live') === null").await?;
         page.click("#device").await?;
@@ -97,7 +97,7 @@ fn stop_uses_the_settings_of_the_stream_until_confirmed() -> Result<()> {
         page.until("peer.closed === 2").await?;
         page.until(&format!("{SAID}.startsWith('STOP is confirmed')")).await?;
         assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, [115_200, 115_200]);
-        // That is all: it is the dialog's own key again.
+        // After that it is the dialog's own key again.
         page.until("!document.getElementById('live-close').disabled").await?;
         page.press("#live-close", ESCAPE).await?;
         page.until("document.querySelector('dialog.live') === null").await
@@ -111,7 +111,7 @@ fn a_stop_after_the_end_of_a_stream_is_sent_separately() -> Result<()> {
         page.eval::<Value>(OWN).await?;
         start(&page).await?;
         page.until(&format!("{ROWS} > 5")).await?;
-        // As if the press met a worker that has just given up and hears it no more.
+        // As if the press reached a worker that has just given up and ignores it.
         let late = "(() => {
             const post = own.postMessage;
             own.postMessage = function (data, given) { if (!('stop' in data) || 'stream' in data) return post.call(this, data, given); };
@@ -158,7 +158,7 @@ fn an_experiment_changed_behind_the_dialog_is_not_started() -> Result<()> {
         page.until(&format!("{SAID}.startsWith('The experiment has changed')")).await?;
         page.until(&format!("{ABOUT}.includes('57600 baud')")).await?;
         assert_eq!(page.eval::<Vec<u32>>("peer.opened").await?, Vec::<u32>::new());
-        // Nor is the second press of two.
+        // Neither is the second of two presses.
         let twice =
             "document.getElementById('live-start').dispatchEvent(new MouseEvent('click', { detail: 2 }))";
         page.eval::<bool>(twice).await?;
@@ -185,7 +185,7 @@ fn a_failed_worker_releases_the_port_and_is_replaced() -> Result<()> {
         page.until("peer.closed === 1").await?;
         page.until("!document.getElementById('live-start').disabled").await?;
         page.eval::<Value>("(window.spoil = null)").await?;
-        // What was answered before it failed nobody knows.
+        // Replies before the failure are unknown.
         page.click("#live-start").await?;
         page.until(&format!("{SAID}.endsWith('press STOP first, or start again.')")).await?;
         page.eval::<Value>(PRESS_START).await?;
@@ -201,12 +201,12 @@ fn a_port_that_stays_open_is_reported_and_disables_buttons() -> Result<()> {
         page.eval::<Value>(OWN).await?;
         start(&page).await?;
         page.until(&format!("{ROWS} > 5")).await?;
-        // As if the worker's memory were gone: nobody gives the port's streams back.
+        // As if the worker's memory were lost: nothing returns the port's streams.
         let gone = "(own.terminate(), own.onmessage({ data: { error: 'unreachable' } }), null)";
         page.eval::<Value>(gone).await?;
         page.until(&format!("{SAID}.includes('The port could not be closed: reload this page')")).await?;
         page.until(&format!("{ABOUT}.includes(' baud')")).await?;
-        // A press on the browser's list, which has it all the same, says so again.
+        // Selecting the port in the browser's list again shows the message again.
         page.click("#live-choose").await?;
         page.until(&format!(
             "{SAID} === 'The port could not be closed: reload this page before you use it again.'"

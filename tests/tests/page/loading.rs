@@ -1,4 +1,4 @@
-//! What loading takes: which files, and no moving about.
+//! Loading of the page: which files load, and a stable layout.
 
 use anyhow::{Result, ensure};
 use serde::Deserialize;
@@ -10,7 +10,7 @@ use crate::{
     session::Session,
 };
 
-/// Notes, from the document's beginning on, what the browser measures of the visit.
+/// Records the browser's measurements of the visit, from the start of the document on.
 const OBSERVE: &str = "{
     window.seen = { cls: 0, shifted: [], fetched: [] };
     const observe = (type, note) => new PerformanceObserver((list) => list.getEntries().forEach(note)).observe({ type, buffered: true });

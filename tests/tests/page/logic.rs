@@ -1,4 +1,4 @@
-//! The logic view by hand and by keys: decoders, light, markers, edges, violations, the strip.
+//! The logic view with mouse and keys: decoders, highlights, markers, edges, violations, the overview.
 
 use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{InputSource, MOUSE_BUTTON_LEFT, MouseActions, PointerAction};
@@ -11,7 +11,7 @@ use crate::{
     session::{ENTER, RELEASE, SHIFT, Session},
 };
 
-/// Keys as WebDriver writes them.
+/// Keys in the notation of WebDriver.
 const RIGHT: char = '\u{e014}';
 /// See [`RIGHT`].
 const ESCAPE: char = '\u{e00c}';
@@ -26,13 +26,13 @@ fn preset(id: &str) -> Result<Known> {
     Known::preset(PRESETS.iter().find(|preset| preset.id == id).with_context(|| id.to_owned())?)
 }
 
-/// Opens a scenario by its link and shows all of it.
+/// Opens a scenario by its link and shows the whole run.
 async fn open(page: &Session, known: &Known) -> Result<()> {
     page.open(&format!("#{}", known.link)).await?;
     page.until_digest(&known.digest).await
 }
 
-/// Puts the mouse on a cycle of a row of the whole run, and presses there.
+/// Moves the mouse to a cycle in a row of the whole run, and clicks.
 async fn point(page: &Session, known: &Known, row: usize, cycle: u64, press: bool) -> Result<()> {
     let place = "(({ left, top, width }) => [left, top, width])(document.getElementById('pulses').getBoundingClientRect())";
     let (left, top, width): (f64, f64, f64) = page.eval(place).await?;
@@ -56,11 +56,11 @@ fn selecting_bytes_highlights_their_packet_in_all_views() -> Result<()> {
     in_browser(|page| async move {
         let known = preset("glitches-and-breaks")?;
         open(&page, &known).await?;
-        // The decoders begin folded.
+        // The decoders are folded at first.
         page.choose("#edge-row", "33").await?;
         page.press("#pulses", &ENTER.to_string()).await?;
         let log = &known.recording.packets;
-        // The second packet's first byte was sent as 83 and heard as 87.
+        // The second packet's first byte was sent as 83 and received as 87.
         assert_eq!(log.bytes(1), [0x87, 0x05]);
         let seen = log.start_bits(1);
         let middle = |byte: usize| seen[byte].0 + 5 * known.experiment.config().bit().0;
@@ -232,7 +232,7 @@ fn missing_violations_and_edges_are_reported_in_the_view() -> Result<()> {
         page.click("#edge-next").await?;
         until_reads(&page, "EN: no later edge").await?;
         page.until("document.getElementById('pulses-sentence').textContent === 'EN: no later edge.'").await?;
-        // What a key comes to is spoken; without a cursor Escape leaves.
+        // The result of a key is announced; without a cursor Escape leaves.
         page.choose("#edge-row", "0").await?;
         page.press("#pulses", &format!("{SHIFT}{RIGHT}{RELEASE}")).await?;
         page.until("/STEP 0 (low|high)/.test(document.getElementById('pulses-sentence').textContent)")
@@ -257,7 +257,7 @@ fn the_overview_moves_and_resizes_the_range_by_mouse_and_keys() -> Result<()> {
         let moved: (String, String) = page.eval(window).await?;
         ensure!(moved.0 != shorter.0 && moved.1 != shorter.1, "all of it moves: {moved:?}");
 
-        // The right edge is taken by the mouse and made shorter.
+        // The mouse drags the right edge to the left.
         let place = "(({ left, top, width }) => [left, top, width])(document.getElementById('overview').getBoundingClientRect())";
         let (left, top, width): (f64, f64, f64) = page.eval(place).await?;
         page.press("#overview", "\u{e011}").await?;

@@ -1,5 +1,5 @@
-//! The page in real browsers, driven by WebDriver, under the headers that a host sends: its main job in three engines,
-//! all else in Chromium without a window. What the page shows is compared with native runs of the core.
+//! The page in real browsers, driven by WebDriver, with the headers of a host: its main task in three engines, all
+//! else in headless Chromium. The page's values are compared with native runs of the core.
 //!
 //! `cargo xtask test --only page --only engines` builds the page and sets the environment:
 //!
@@ -7,24 +7,24 @@
 //! | --- | --- |
 //! | `STEPSCOPE_CHROMIUM`, `STEPSCOPE_CHROMEDRIVER` | the browser and its driver |
 //! | `STEPSCOPE_FIREFOX`, `STEPSCOPE_GECKODRIVER` | the same of Firefox |
-//! | `STEPSCOPE_WEBKITDRIVER`, `DISPLAY` | the driver of WebKit, which knows its browser, and a display for it |
-//! | `STEPSCOPE_COMMAND` | the command `stepscope`, for a port of the system; needed by the tests of `live_port` alone |
+//! | `STEPSCOPE_WEBKITDRIVER`, `DISPLAY` | the driver of WebKit, which finds its browser, and a display for it |
+//! | `STEPSCOPE_COMMAND` | the command `stepscope`, for a system port; only for the tests of `live_port` |
 //! | `STEPSCOPE_XTASK` | the program whose `serve --port 0` serves the page |
 //! | `STEPSCOPE_WEB` | the folder with the page's sources and its wasm: single modules can be tested there |
-//! | `STEPSCOPE_DIST` | the folder with the page as it is shipped |
-//! | `STEPSCOPE_SHOTS` | a folder for pictures of the page, and of every page that failed; none without it |
+//! | `STEPSCOPE_DIST` | the folder with the shipped page |
+//! | `STEPSCOPE_SHOTS` | a folder for pictures of the page after failures; optional |
 //!
-//! | file | what it holds |
+//! | file | contents |
 //! | --- | --- |
-//! | `programs` | servers and drivers, ended with this process however it ends |
+//! | `programs` | servers and drivers, which always end with this process |
 //! | `pool` | browsers that the tests share; reset between tests |
-//! | `bench` | what one test uses, given back at its end however it ends |
+//! | `bench` | the setup of one test, always released at its end |
 //! | `browser` | the three engines: drivers, sessions, consoles |
-//! | `session` | one browser with the page in it: what a user does and sees |
+//! | `session` | one browser with the page: actions of a user, and what is visible |
 //! | `devtools` | requests to a browser beyond WebDriver |
-//! | `pixels` | what is drawn on a canvas |
+//! | `pixels` | the contents of a canvas |
 //! | `device` | the dialog Device, and a mock of `navigator.serial` |
-//! | `native` | what the core says of the same scenario |
+//! | `native` | the results of the core for the same scenario |
 //! | the others | the tests |
 #![cfg(not(target_arch = "wasm32"))]
 

@@ -1,4 +1,4 @@
-//! The study's tab Measures, its figures against the core's, and the sensor beside the spectrum.
+//! The study's tab Measures, compared with the core, and the sensor of the spectrum.
 #![allow(clippy::expect_used, clippy::panic, reason = "a missing file or program fails the test")]
 
 use anyhow::{Result, ensure};
@@ -18,18 +18,18 @@ use stepscope_core::{
 
 use crate::{bench::in_browser, native::Known, session::Session};
 
-/// A sine that goes so fast that ticks show, its spectrum of a number of samples that is no power of two.
+/// A sine so fast that ticks are visible, with a number of samples that is no power of two.
 const SINE: &str = r#"{"analysis":{"order":99,"fft_length":1000,"sensor_hz":40},"source":{"motion":{"axes":[{"moves":[
     {"sine_segments":{"amplitude":{"steps":800},"period_s":0.5,"periods":2,"max_deviation":0.0054}}]}]}}}"#;
 
-/// Texts of the cells of the `nth` row with this head, digits without their groups.
+/// Texts of the cells of the `nth` row with this header, without digit grouping.
 async fn cells(page: &Session, table: &str, head: &str, nth: usize) -> Result<Vec<String>> {
     let script = "const row = [...document.querySelectorAll(`table[aria-label='${arguments[0]}'] tbody tr`)].filter((row) => row.cells[0].textContent === arguments[1])[arguments[2]];
         return row ? [...row.cells].slice(1).map((cell) => cell.textContent.replace(/\\u202f/g, '').replace('−', '-')) : [];";
     page.js(script, vec![json!(table), json!(head), json!(nth)]).await
 }
 
-/// Holds a text of four digits against a number, whatever the prefix of its unit.
+/// Compares a text of four digits with a number, with any prefix of its unit.
 fn close(text: &str, wanted: f64) -> Result<()> {
     let (number, unit) = text.split_once(' ').unwrap_or((text, ""));
     let scale = match unit {
@@ -76,7 +76,7 @@ fn measures_of_axes_match_the_core() -> Result<()> {
         ];
         for (name, wanted) in rows {
             let cells = cells(&page, "Steps and ticks", name, 0).await?;
-            // The last cell says what it means.
+            // The last cell explains the row.
             ensure!(cells.len() == 4 && cells[3].len() > 10, "{name}: {cells:?}");
             cells.iter().zip(wanted).try_for_each(|(text, wanted)| close(text, wanted))?;
         }
@@ -104,7 +104,7 @@ fn measures_of_axes_match_the_core() -> Result<()> {
         let distance = cells(&page, "Sine by segments", "Ev", 0).await?;
         close(&distance[0], found.sine.expect("a sine").euclidean)?;
 
-        // Another run, other figures; and none for an axis without a motion.
+        // Another run has other figures; an axis without a motion has none.
         page.fill("source.motion.axes[0].moves[0].sine_segments.max_deviation", "0.02").await?;
         page.until(&format!(
             "document.querySelector(\"table[aria-label='Sine by segments'] td\").textContent !== '{}'",
@@ -124,7 +124,7 @@ fn measures_of_axes_match_the_core() -> Result<()> {
 #[test]
 fn measures_of_steps_without_a_motion_match_the_core() -> Result<()> {
     in_browser(|page| async move {
-        // To and fro four times, and a channel that stands.
+        // Back and forth four times, and an idle channel.
         let list = r#"{"bus":{"channels":2},"source":{"segments":{"channels":[{"segments":[
             {"steps":{"count":100,"interval_q16":524288000,"dir":1}},{"steps":{"count":100,"interval_q16":262144000,"dir":0}},
             {"steps":{"count":100,"interval_q16":524288000,"dir":1}},{"steps":{"count":100,"interval_q16":262144000,"dir":0}},
@@ -154,7 +154,7 @@ fn measures_of_steps_without_a_motion_match_the_core() -> Result<()> {
         close(&one("longest interval").await?, figures.longest_interval_s.expect("steps"))?;
         let rate = one("maximum rate").await?;
         assert_eq!(rate, format!("{} steps/s", figures.max_rate_steps_s.expect("steps")));
-        // They go to and fro evenly, so what is distorted is known of the pulses alone.
+        // They move back and forth evenly, so the pulses have a distortion.
         let distortion = cells(&page, "Distortion", "speed", 0).await?;
         ensure!(distortion[0] == "–" && distortion[1].ends_with('%'), "{distortion:?}");
         for table in ["Steps and ticks", "Duration", "Maxima of the ideal curve"] {
@@ -192,7 +192,7 @@ fn distortion_follows_the_bandwidth_of_the_sensor() -> Result<()> {
         let text =
             said.rsplit_once("ideal ").map(|(_, rest)| rest.split(' ').next().unwrap_or("")).unwrap_or("");
         ensure!((text.parse::<f64>()? - wanted).abs() < 1e-3 * wanted, "{said} is not {wanted}");
-        // It is drawn, too: what a sensor lets through of each harmonic.
+        // It is drawn, too: the filtered part of each harmonic.
         let drawn = "document.getElementById('spectrum-chart').toDataURL()";
         let unfiltered: String = page.eval(drawn).await?;
         page.choose("#spectrum-quantity", "acceleration_filtered").await?;

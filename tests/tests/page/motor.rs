@@ -1,5 +1,5 @@
-//! The view Motor and the study's tab Motor against what the core finds: verdicts, numbers, rates; and a motor that is
-//! chosen from the list.
+//! The view Motor and the study's tab Motor, compared with the core: verdicts, numbers, rates; and a motor
+//! selected from the list.
 #![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 
 use anyhow::{Result, ensure};
@@ -15,7 +15,7 @@ use stepscope_core::{
 
 use crate::{bench::in_browser, native::Known, session::Session};
 
-/// What the view says of the motor on show.
+/// The text of the view for the visible motor.
 const VERDICT: &str = "document.getElementById('motor-verdict').textContent.replace(/\\u202f/g, '')";
 
 fn report(known: &Known) -> PlantReport {
@@ -24,13 +24,13 @@ fn report(known: &Known) -> PlantReport {
     PlantReport::of(&known.experiment, &run, 0).expect("a plant")
 }
 
-/// Values of a table of the study, its first column left out.
+/// Values of a table of the study, without its first column.
 async fn values(page: &Session, table: &str) -> Result<Vec<String>> {
     let script = "return [...document.querySelectorAll(`table[aria-label='${arguments[0]}'] tbody tr`)].map((row) => row.cells[1].textContent.replace(/\\u202f/g, ''));";
     page.js(script, vec![json!(table)]).await
 }
 
-/// Waits until the searches of the study have come to their ends.
+/// Waits until the searches of the study have ended.
 async fn until_found(page: &Session) -> Result<()> {
     page.until("document.querySelectorAll('#study-motor .study-job').length === 4").await?;
     page.until("document.querySelectorAll(`table[aria-label='Motor limits'] tbody tr`).length > 3").await?;
@@ -126,7 +126,7 @@ fn the_motor_tab_of_the_study_matches_the_command() -> Result<()> {
         let start = search(|rate| starts(&setup, rate, setup.motors[0].steps_per_turn())).expect("a plant");
         let pull = search(|rate| pulls(&setup, rate, RAMP_STEPS_S2)).expect("a plant");
         ensure!(found[..2] == [rate(start), rate(pull)], "{found:?}");
-        // The patent's figures: a settling time that can be taken, and the ratio of both ways.
+        // The patent's figures: a settling time that can be applied, and the ratio of the peaks.
         let slot = known.experiment.config().tick().0 / u64::from(known.experiment.config().slots());
         let reached = settling(&setup, 0, slot, SHARE).expect("a plant").0.reached.expect("it settles");
         let text: String = page.eval("document.getElementById('study-motor').textContent").await?;
@@ -166,7 +166,7 @@ fn each_controllers_motor_has_its_curve_and_settling_time() -> Result<()> {
             "document.querySelector('#study-motor .study-note').textContent.includes('of controller 2')",
         )
         .await?;
-        // The usual motor, which no axis has as its own, has a torque curve, too.
+        // The default motor, which no axis defines, has a torque curve, too.
         let shown =
             "[...document.querySelectorAll('#study-motor .torque-chart')].map((chart) => !chart.hidden)";
         page.until(&format!("{shown}.every(Boolean)")).await?;
@@ -194,7 +194,7 @@ fn an_expanded_list_covers_nothing_and_closes_for_a_motor() -> Result<()> {
             page.preset("patent-2019-figure-2").await?;
             page.until(&format!("{VERDICT}.includes('follows')")).await?;
             page.until("!document.getElementById('motor-choice').open").await?;
-            // Both show what they hold, and can be closed again by a press on what opened them.
+            // Both show their contents, and the button that opened them closes them.
             for fold in ["#motor-choice", "#motor-choice + details"] {
                 page.click(&format!("{fold} > summary")).await?;
                 page.until(&format!("document.querySelector('{fold}').open")).await?;
@@ -224,7 +224,7 @@ fn lost_steps_are_marked_to_the_end_and_all_charts_fit() -> Result<()> {
         page.until(&format!("{VERDICT}.includes('loses')")).await?;
         let chart = "document.querySelectorAll('#motor-charts .chart canvas')[1]";
         page.until(&format!("{chart}.width > 200")).await?;
-        // The chart of the error is red up to where the last step is lost.
+        // The chart of the error is red up to the last lost step.
         let last =
             report.slips.last().expect("a slip").cycle as f64 / known.experiment.cost().end_cycle as f64;
         let red = format!(

@@ -1,4 +1,4 @@
-//! What the core says of a scenario, without a browser.
+//! The core's results of a scenario, without a browser.
 
 use anyhow::{Result, anyhow};
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -14,14 +14,14 @@ use stepscope_core::{
     sim::Experiment,
 };
 
-/// A scenario, and all that the core makes of it.
+/// A scenario and all its results.
 pub(crate) struct Known {
     pub(crate) scenario: Scenario,
     pub(crate) experiment: Experiment,
     pub(crate) recording: StoredRun,
-    /// 16 hexadecimal digits, as the page shows it.
+    /// 16 hexadecimal digits, as on the page.
     pub(crate) digest: String,
-    /// What stands behind the `#`.
+    /// The part after the `#`.
     pub(crate) link: String,
 }
 
@@ -51,18 +51,18 @@ impl Known {
         Self::of(preset.json)
     }
 
-    /// A duration of so many cycles in s.
+    /// This number of cycles in s.
     pub(crate) fn seconds(&self, cycles: u64) -> f64 {
         cycles as f64 / f64::from(self.experiment.config().clock_hz())
     }
 }
 
-/// The link of a scenario that is not run.
+/// The link of a scenario, without a run.
 pub(crate) fn link_of(json: &str) -> Result<String> {
     Ok(link::encode(&Scenario::from_json(json).map_err(listed)?)?)
 }
 
-/// The path of the default motion's distance, which its field has.
+/// The path of the field for the default motion's distance.
 pub(crate) const DISTANCE: &str = "source.motion.axes[0].moves[0].cosine.distance";
 
 /// The default motion with another distance in steps.
@@ -72,12 +72,12 @@ pub(crate) fn with_distance(steps: f64) -> String {
     )
 }
 
-/// Everything that is wrong with a scenario, as `check` in the page has it.
+/// All problems of a scenario, as `check` reports them in the page.
 pub(crate) fn problems(json: &str) -> Vec<Problem> {
     Experiment::from_json(json).err().into_iter().flatten().collect()
 }
 
-/// Why a link does not open; an error if it does.
+/// Why a link does not open; an error if it opens.
 pub(crate) fn refusal(fragment: &str) -> Result<String> {
     let refused = link::decode(fragment)
         .and_then(|scenario| Experiment::new(&scenario).map_err(LinkError::Scenario))
@@ -85,7 +85,7 @@ pub(crate) fn refusal(fragment: &str) -> Result<String> {
     refused.map(|error| error.to_string()).ok_or_else(|| anyhow!("{fragment} opens"))
 }
 
-/// A link of format 1 with a right check around any payload.
+/// A link of format 1 with a valid CRC and any payload.
 pub(crate) fn forged(codec: char, payload: &[u8]) -> String {
     let text = format!("1.{codec}.{}", BASE64URL_NOPAD.encode(payload));
     format!("c={text}.{:08x}", Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(text.as_bytes()))

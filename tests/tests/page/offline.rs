@@ -1,4 +1,4 @@
-//! The page as it is shipped: kept on the visitor's device, and replaced when the visitor says so.
+//! The shipped page: it is stored on the user's device, and replaced on request.
 
 use std::{fs, path::Path};
 
@@ -39,7 +39,7 @@ fn copy_into(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Replaces what stands in a file once.
+/// Replaces a text of a file that occurs once.
 fn change(file: &Path, from: &str, to: &str) -> Result<()> {
     let text = fs::read_to_string(file)?;
     ensure!(text.matches(from).count() == 1, "{} must hold once: {from}", file.display());
@@ -69,7 +69,7 @@ fn the_second_visit_needs_no_network() -> Result<()> {
             page.until("document.querySelector('h1') !== null").await?;
         }
         page.ready().await?;
-        // What could not be fetched just now was asked for by this test.
+        // This test caused the failed request.
         let complaints = page.complaints().await?;
         ensure!(complaints.iter().all(|line| line.contains("not-kept")), "{complaints:?}");
         Ok(())
@@ -152,7 +152,7 @@ fn the_page_can_be_installed() -> Result<()> {
         until_kept(&page).await?;
         let answer = page.devtools("Page.getInstallabilityErrors", serde_json::json!({})).await?;
         let errors = answer["installabilityErrors"].as_array().context("no answer")?.clone();
-        // Profiles without a window are private in some versions, which alone is no fault of the page.
+        // In some versions headless profiles are private, which is not a fault of the page.
         let own: Vec<_> = errors.iter().filter(|error| error["errorId"] != "in-incognito").collect();
         ensure!(own.is_empty(), "{own:?}");
         let manifest = page.devtools("Page.getAppManifest", serde_json::json!({})).await?;

@@ -1,4 +1,4 @@
-//! The packets: search, filters, the inspector against the core's own reading, and what lights what.
+//! The packets: search, filters, highlights, and the inspector compared with the core.
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
@@ -43,7 +43,7 @@ fn meaning(known: &Known, index: usize) -> Dissection {
     .dissect(log.bytes(index), log.rows()[index].outcome)
 }
 
-/// Types into the search, in place of what stands there.
+/// Replaces the text of the search.
 async fn search(page: &Session, text: &str) -> Result<()> {
     page.press("#packets-search", &format!("{CONTROL}a{RELEASE}{text}")).await
 }
@@ -71,7 +71,7 @@ fn search_steps_through_matches_and_filter_hides_other_rows() -> Result<()> {
         ensure!(bad.len() > 2, "the noise breaks frames");
         let all = log.rows().len();
 
-        // Words: the first match, the next ones, and round again.
+        // Words: the first match, the next ones, and the first one again.
         search(&page, "crc").await?;
         for (rank, row) in bad.iter().enumerate().chain([(0, &bad[0])]) {
             page.until_equal(FOUND, &json!(format!("{} of {}", rank + 1, bad.len()))).await?;
@@ -80,7 +80,7 @@ fn search_steps_through_matches_and_filter_hides_other_rows() -> Result<()> {
         }
         page.until_equal(COUNT, &json!(format!("{all} on the line"))).await?;
 
-        // Only the matches are left, and go away with the filter.
+        // Only the matches are visible, and all rows again without the filter.
         page.click("#packets-filters").await?;
         page.click("#packets-only").await?;
         page.until_equal(COUNT, &json!(format!("{} of {all} on the line", bad.len()))).await?;
@@ -89,7 +89,7 @@ fn search_steps_through_matches_and_filter_hides_other_rows() -> Result<()> {
         let shown: Vec<usize> = page.eval(ROWS).await?;
         ensure!(shown.iter().zip(&bad).all(|(a, b)| a == b), "{shown:?}, wanted {bad:?}");
 
-        // The bytes of a frame, without spaces, are on all of its repetitions.
+        // The bytes of a frame, without spaces, occur in all its repetitions.
         let bytes = log.bytes(2);
         let hex: String = bytes.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
         let same = with(&|row| log.bytes(row).windows(8).any(|part| part == &bytes[..8]));
@@ -132,7 +132,7 @@ fn an_address_hides_packets_for_other_addresses() -> Result<()> {
     })
 }
 
-/// Goes through the rows and holds the inspector against the core.
+/// Compares the inspector with the core, row by row.
 async fn inspected(page: &Session, known: &Known, rows: usize) -> Result<()> {
     let log = &known.recording.packets;
     for index in 0..rows {
@@ -212,14 +212,14 @@ fn a_field_highlights_its_bytes_and_waveform_and_vice_versa() -> Result<()> {
         .await?;
         let reading = page.text("#packet-reading").await?;
         ensure!(reading.starts_with(&format!("bytes {} to {}", bytes[0], bytes[3])), "{reading}");
-        // The same mark lies over the pulses.
+        // The same mark is above the pulses.
         let marked = "(() => { const canvas = document.getElementById('pulses-cursor'); const { data } = canvas.getContext('2d')
             .getImageData(0, 0, canvas.width, canvas.height); return data.some((value) => value !== 0); })()";
         page.until(marked).await?;
         page.press("#packet-fields", "\u{e00c}").await?;
         page.until_equal(LIT, &json!([])).await?;
         page.until(&format!("!({marked})")).await?;
-        // A row lights its stretch, too; it is marked itself.
+        // A row also highlights its part of the line; it is marked itself.
         let over = "document.querySelector('#packet-2').dispatchEvent(new PointerEvent('pointerover', { bubbles: true }));";
         page.js::<Value>(over, Vec::new()).await?;
         page.until("document.querySelector('#packet-2').classList.contains('highlighted')").await?;
@@ -326,7 +326,7 @@ fn narrow_tables_need_no_horizontal_scrolling() -> Result<()> {
             page.until("['packets-scroll', 'packet-inspector'].every((id) => { const box = document.getElementById(id); \
                 return box.scrollWidth <= box.clientWidth; })")
                 .await?;
-            // The outcome is never cut.
+            // The outcome is never cut off.
             page.until("[...document.querySelectorAll('#packets td:nth-child(5)')].every((cell) => cell.scrollWidth <= cell.clientWidth)")
                 .await?;
             page.picture(&format!("packets-{width}")).await?;

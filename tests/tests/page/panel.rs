@@ -1,4 +1,4 @@
-//! The view Panel and the form of stand-alone controllers against what the core makes of the same presses.
+//! The view Panel and the form of stand-alone controllers, compared with the core for the same presses.
 #![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 
 use anyhow::{Result, ensure};
@@ -19,21 +19,21 @@ use crate::{
 
 /// What the display shows.
 const LCD: &str = "document.querySelector('.lcd')?.textContent";
-/// What the panel says as text.
+/// The text of the panel.
 const WORDS: &str = "document.querySelector('.panel-words')?.textContent";
-/// What became of the last press.
+/// The outcome of the last press.
 const SAID: &str = "document.getElementById('panel-status').textContent";
-/// A release so far behind its press: debouncing, and 10 ms.
+/// A release follows its press after this time: debouncing, and 10 ms.
 const SHORTEST: u64 = 320_000;
 
-/// A controller with these inputs, looked at for a second.
+/// A controller with these inputs, run for a second.
 fn with_inputs(inputs: &str) -> Result<Known> {
     Known::of(&format!(
         r#"{{"run_cycles":16000000,"source":{{"standalone":[{{"pulses_per_unit":565,"axis":{{"max_switch_at_steps":1000}},"inputs":[{inputs}]}}]}}}}"#
     ))
 }
 
-/// A controller whose program moves for 100 s, so a pause comes within it however slow the machine is.
+/// A controller whose program moves for 100 s, so that a pause is within it even on a slow machine.
 fn with_long_program(inputs: &str) -> Result<Known> {
     Known::of(&format!(
         r#"{{"run_cycles":1600000000,"source":{{"standalone":[{{"groups":[{{"move":{{"length":999999,"speed_hz":1000}}}}],"inputs":[{inputs}]}}]}}}}"#
@@ -46,7 +46,7 @@ fn press(input: &str, from: u64, until: u64) -> String {
     )
 }
 
-/// Waits until the page runs this, and its address is the scenario's.
+/// Waits for this run, and for the scenario's address.
 async fn until_run(page: &Session, known: &Known) -> Result<()> {
     page.until_digest(&known.digest).await?;
     page.until(&format!("location.hash.startsWith('#{}')", known.link)).await
@@ -58,14 +58,14 @@ async fn open(page: &Session, known: &Known, cycle: u64) -> Result<()> {
     page.until(&format!("{LCD} !== undefined && {LCD} !== ''")).await
 }
 
-/// The machine as it is at the beginning of a cycle.
+/// The controller at the start of a cycle.
 fn at(known: &Known, cycle: u64) -> StandAlone {
     let mut machine = StandAlone::new(known.experiment.stand_alone().expect("a controller"));
     machine.run(Instant(cycle), &mut Vec::new());
     machine
 }
 
-/// Waits until display and words are those of a machine.
+/// Waits until display and text are those of a controller.
 async fn until_shown(page: &Session, machine: &StandAlone) -> Result<()> {
     let decimals = machine.numbers(0)[1] as u8;
     let word = machine.word(0).expect("a panel");
@@ -125,9 +125,9 @@ fn a_press_at_the_cursor_is_linked_and_can_be_undone() -> Result<()> {
         page.click("#undo").await?;
         until_run(&page, &none).await?;
         page.until(&format!("{SAID} === ''")).await?;
-        // As long as it is to be held: 0.2 s at 1000 Hz.
+        // The duration of the press: 0.2 s at 1000 Hz.
         page.js::<bool>("const hold = document.querySelector('#view-panel .head input'); hold.value = '0.2'; hold.dispatchEvent(new Event('change')); return true;", vec![]).await?;
-        // The cursor went behind the first press; it is let go by a button.
+        // The cursor moved behind the first press; a button releases it.
         let from = 4_000_000 + 2 * SHORTEST;
         page.until(&format!("location.hash.includes('a{from}')")).await?;
         page.click("[data-input='jog_plus']").await?;
@@ -151,7 +151,7 @@ fn the_panel_shows_the_next_action_and_unreached_speeds() -> Result<()> {
         page.until(&format!("document.querySelector(`[data-path='{speed}']`).closest('.field').querySelector('.also').textContent.includes('because 4000 Hz needs')")).await?;
         page.click("[data-input='clear']").await?;
         page.until(&format!("{advice}.startsWith('The position is lost')")).await?;
-        // Homing is not set up: the button says so, and so does the log.
+        // Homing is not set up: the button and the log state it.
         page.until("document.querySelector(`[data-input='home']`).title.includes('not set up')").await?;
         page.click("[data-input='home']").await?;
         page.until("document.querySelector('.ignored').textContent.includes('homing is not set up')").await
@@ -169,7 +169,7 @@ fn the_power_is_cut_at_the_cursor_and_comes_back() -> Result<()> {
         until_run(&page, &known).await?;
         page.until("document.querySelector(`[data-input='power'][data-level='0']`).disabled").await?;
         page.devtools("Emulation.setEmulatedMedia", json!({ "features": [] })).await?;
-        // Its own last word.
+        // Its own last status.
         page.press(".strip canvas", "\u{e00c}").await?;
         until_shown(&page, &at(&known, 16_000_000)).await?;
         page.click("[data-input='estop'][data-level='1']").await?;
@@ -189,7 +189,7 @@ fn an_impossible_input_is_reported_and_changes_nothing() -> Result<()> {
         page.until(&format!("{SAID}.includes('The right limit switch is driven by')")).await?;
         page.ready().await?;
         until_run(&page, &known).await?;
-        // A press that means nothing is reported, and where.
+        // A press without effect is reported with its location.
         page.click("[data-input='ok']").await?;
         page.until("document.querySelector('.ignored').textContent.includes('1 press ignored')").await?;
         page.until("document.querySelector('.ignored').textContent.includes('ok at 260 ms in JOG')").await
@@ -208,7 +208,7 @@ fn an_input_is_selected_moved_and_removed_by_keys_and_field() -> Result<()> {
         page.until(&format!("{chosen} > 8000000")).await?;
         let there: String = page.eval(chosen).await?;
         until_run(&page, &with_inputs(&press("jog_plus", 4_000_000, there.parse()?))?).await?;
-        // A time is taken, too; onto another entry of the input it does not go.
+        // A time is accepted, too, unless it is that of another entry of the input.
         let fill = |text: &str| {
             format!(
                 "const field = document.querySelector('.entry-line input'); field.value = '{text}'; field.dispatchEvent(new Event('change')); return true;"
@@ -230,7 +230,7 @@ fn a_program_is_started_paused_and_cut_with_keys_only() -> Result<()> {
         page.press("[data-input='start']", &ENTER.to_string()).await?;
         let start = press("start", 3_200_000, 3_200_000 + SHORTEST);
         until_run(&page, &with_long_program(&start)?).await?;
-        // By one key live: it goes into the script as it is held, and is one step of the history.
+        // A live press by key: it is added to the script while it is held, and is one undo step.
         page.press("#view-panel .head [aria-label='Live'] button", &ENTER.to_string()).await?;
         page.until("document.querySelector('.panel-at').textContent.startsWith('live')").await?;
         page.js::<bool>("document.querySelector(`[data-input='pause']`).focus(); return true;", vec![])
@@ -269,7 +269,7 @@ fn the_program_is_a_table_of_groups_in_units_of_length() -> Result<()> {
         }
         page.click("button[title='Remove group 2']").await?;
         page.until_digest(&known.digest).await?;
-        // Homing that there may be or not, and another controller with its channel.
+        // Optional homing, and another controller with its channel.
         page.js::<bool>("for (const part of document.querySelectorAll('#fields details')) part.open = true; document.querySelector(`[data-path='source.standalone[0].home#kind']`).click(); return true;", vec![]).await?;
         page.until("document.querySelector(`[data-path='source.standalone[0].home.coarse_hz']`)").await?;
         page.click("button[title='Add controller']").await?;
@@ -307,7 +307,7 @@ fn axe_finds_nothing_in_the_panel() -> Result<()> {
     })
 }
 
-/// A worker of the page's own, given its questions in an order that a slow network makes.
+/// A separate worker of the page, with requests in an order that a slow network causes.
 const INTERLEAVED: &str = r"
     const [alone, motion] = given;
     const { worker: address } = document.getElementById('main').dataset;

@@ -1,4 +1,4 @@
-//! What is drawn on a canvas, read back pixel by pixel.
+//! The contents of a canvas, read pixel by pixel.
 
 use std::collections::BTreeMap;
 
@@ -8,34 +8,34 @@ use serde_json::json;
 
 use crate::session::Session;
 
-/// A canvas as it is drawn now.
+/// The current contents of a canvas.
 #[derive(Debug, Deserialize)]
 pub(crate) struct Canvas {
     /// Device pixels.
     pub(crate) width: f64,
     /// Device pixels.
     pub(crate) height: f64,
-    /// Colours that differ clearly, what is transparent not counted.
+    /// Number of clearly different colors, without transparent pixels.
     pub(crate) colours: u32,
-    /// Of all pixels; two equal drawings have the same.
+    /// A hash of all pixels; equal pictures have the same.
     pub(crate) hash: String,
-    /// By the name of the custom property that holds the colour.
+    /// By the name of the color's custom property.
     pub(crate) inks: BTreeMap<String, Ink>,
 }
 
-/// Where one of the page's colours is found right of the labels.
+/// Where one of the page's colors occurs to the right of the labels.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub(crate) struct Ink {
     pub(crate) pixels: u32,
-    /// Columns that have it.
+    /// Number of columns with it.
     pub(crate) columns: f64,
     /// Rows from the highest to the lowest.
     pub(crate) rows: f64,
 }
 
-/// Width of the labels' column, right of which charts and pulses are plotted.
+/// Width of the label column; charts and pulses are to its right.
 const LABELS_PX: f64 = 69.0;
-/// Free space at the right of every plotting area.
+/// Free space on the right of every plotting area.
 const MARGIN_PX: f64 = 26.0;
 
 impl Session {
@@ -58,7 +58,7 @@ impl Session {
         self.js(READ, vec![json!(id), json!(inks), json!(LABELS_PX)]).await
     }
 
-    /// Reads the pulses, with no more than the row EN on a ground of its own: it is the one that is chosen.
+    /// Reads the pulses with at most the row EN on its own background: it is the selected one.
     pub(crate) async fn pulses(&self) -> Result<Canvas> {
         self.choose("#edge-row", "32").await?;
         self.canvas("pulses").await
@@ -70,7 +70,7 @@ impl Canvas {
         self.inks.get(name).cloned().unwrap_or_default()
     }
 
-    /// A curve in this colour crosses the plotting area: from its left to its right, over a good part of its height.
+    /// A curve in this color crosses the plotting area from left to right, over a large part of its height.
     pub(crate) fn has_curve(&self, name: &str) -> Result<()> {
         let ink = self.ink(name);
         let plot = self.width - LABELS_PX - MARGIN_PX;

@@ -1,15 +1,15 @@
-//! What all tests share: a server for each folder, Chromium's driver, and browsers that are lent from test to test.
+//! Shared by all tests: one server per folder, Chromium's driver, and a pool of browsers.
 //!
-//! Starting a browser takes longer than most of what a test does in it. So a browser is lent, and each visitor meets it
-//! as if it were new: with a tab of its own, which begins with no emulation, no script of a test's and no history, and
-//! under a name of its own, such as `visitor-7.page.localhost`. By that name it has an origin that no page was ever at,
-//! and what a page leaves behind (storage, databases, caches, cookies without a domain, service workers, permissions)
-//! stays with its origin. All these names are this machine, and to a browser they are as safe as 127.0.0.1; and they are
-//! one site, which may keep its process from visitor to visitor. What has no origin is looked after by hand: between two
-//! visitors keys and buttons that are held are lifted and the console is read out, and the clipboard is emptied for
-//! whoever may use it.
+//! Starting a browser takes longer than most tests, so tests share browsers. Each user gets a browser as if it were
+//! new. The tab is new, without emulation, scripts of other tests or history. The host name is new,
+//! such as `visitor-7.page.localhost`, so it is a new origin,
+//! and everything that a page stores (storage, databases, caches, cookies without a domain, service workers, permissions)
+//! belongs to that origin. All these names are this machine, and browsers treat them like 127.0.0.1. They are
+//! one site, so that users can share a process. Things without an origin are reset explicitly: between two
+//! users, held keys and buttons are released, the console is read, and the clipboard is emptied for a user
+//! who may read it.
 //!
-//! A browser in which something went wrong is not lent again.
+//! After a failure a browser is not used again.
 
 use std::{
     collections::BTreeMap,
@@ -32,22 +32,22 @@ use crate::{
     programs::{Program, START_LIMIT},
 };
 
-/// Not dropped at the end, as no static is; what it holds ends by itself then: see [`Program`].
+/// A static is never dropped; its contents end with this process: see [`Program`].
 static POOL: LazyLock<Pool> = LazyLock::new(Pool::default);
 
 #[derive(Default)]
 struct Pool {
-    /// By the folder that is served.
+    /// By the served folder.
     servers: Mutex<BTreeMap<PathBuf, Program>>,
     driver: Mutex<Option<Program>>,
-    /// Browsers that nobody uses.
+    /// Idle browsers.
     free: Mutex<Vec<Lent>>,
 }
 
-/// A Chromium, open at a tab for one user.
+/// A Chromium with an open tab for one user.
 pub(crate) struct Lent {
     pub(crate) client: Client,
-    /// The tab that keeps the browser open between two visitors.
+    /// The tab that keeps the browser open between two users.
     home: WindowHandle,
 }
 
@@ -67,7 +67,7 @@ pub(crate) fn served(web: &Path) -> Result<String> {
     Ok(address)
 }
 
-/// The same page at an origin that no page was ever at.
+/// The same page at a new origin.
 pub(crate) fn fresh(address: &str) -> String {
     static VISITOR: AtomicU32 = AtomicU32::new(0);
     let number = VISITOR.fetch_add(1, Ordering::Relaxed);
@@ -76,7 +76,7 @@ pub(crate) fn fresh(address: &str) -> String {
 
 /// A new browser of the driver at this address.
 pub(crate) async fn start(browser: Browser, driver: &str) -> Result<Client> {
-    // What keeps the connection lives as long as the process, and not as the test that happens to be the first.
+    // The connection must live as long as the process, not only as the first test.
     static CONNECTIONS: LazyLock<std::io::Result<Runtime>> =
         LazyLock::new(|| tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build());
     let connections = CONNECTIONS.as_ref().map_err(|error| anyhow!("no runtime: {error}"))?;
@@ -100,7 +100,7 @@ fn driver() -> Result<String> {
 }
 
 impl Lent {
-    /// A browser that nobody uses, or a new one. One that is not given back ends.
+    /// An idle browser, or a new one. A browser that is not returned ends.
     pub(crate) async fn take() -> Result<Self> {
         let free = locked(&POOL.free).pop();
         match free {
@@ -113,7 +113,7 @@ impl Lent {
         }
     }
 
-    /// Opens a tab that is in front and has the focus; one that WebDriver opens has not.
+    /// Opens a tab in front with the focus; tabs of WebDriver have no focus.
     pub(crate) async fn open(&self) -> Result<()> {
         let about = json!({ "url": "about:blank" });
         let tab = devtools::command(&self.client, "Target.createTarget", about).await?;
@@ -121,7 +121,7 @@ impl Lent {
         Ok(self.client.switch_to_window(tab.try_into()?).await?)
     }
 
-    /// Closes all that the user opened, lifts what was held down and forgets what the console said.
+    /// Closes everything that the user opened, releases held keys, and clears the console.
     pub(crate) async fn clear(&self) -> Result<()> {
         for tab in self.client.windows().await? {
             if tab != self.home {
@@ -134,14 +134,14 @@ impl Lent {
         devtools::console(&self.client).await.map(drop)
     }
 
-    /// Gives the browser back, as if nobody had been there.
+    /// Returns the browser to the pool, as if it were new.
     pub(crate) async fn give_back(self) -> Result<()> {
         self.clear().await?;
         locked(&POOL.free).push(self);
         Ok(())
     }
 
-    /// Ends the browser: nobody shall have it after this.
+    /// Ends the browser, so that no other test gets it.
     pub(crate) async fn end(self) -> Result<()> {
         Ok(self.client.close().await?)
     }

@@ -1,4 +1,4 @@
-//! Servers and drivers: programs that listen, and that end with this process however it ends.
+//! Servers and drivers: programs that listen, and that always end with this process.
 
 use std::{
     env, fs,
@@ -19,17 +19,17 @@ use anyhow::{Context, Result, bail, ensure};
 
 use crate::browser::{Browser, Says, named};
 
-/// A program that does not say within this time where it listens hangs.
+/// Maximum time until a program reports its address.
 pub(crate) const START_LIMIT: Duration = Duration::from_secs(300);
-/// Rest between two attempts to reach a program.
+/// Pause between two attempts to reach a program.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 
-/// What a program and those that it started have said so far.
+/// The output of a program and its children so far.
 type RxEvent = Arc<Mutex<Vec<String>>>;
 
-/// A program that listens. It ends, with all that it started, when this is dropped, and when this process ends.
+/// A program that listens. It ends, with all its children, when this is dropped, and when this process ends.
 pub(crate) struct Program {
-    /// Address of what it serves, with a slash at the end; or the path where it does.
+    /// The address of its service, with a trailing slash; or the path.
     pub(crate) address: String,
     child: Child,
     heard: RxEvent,
@@ -43,8 +43,8 @@ impl Program {
         Self::start(&serve, Says::Line("serving ")).context("the server")
     }
 
-    /// A browser's driver. Another program may take the free port that it chose before it does: then it chooses once
-    /// more.
+    /// A browser's driver. If another program takes the chosen free port first, a second port is
+    /// chosen.
     pub(crate) fn driver(browser: Browser) -> Result<Self> {
         let mut tried = 0;
         loop {
@@ -57,12 +57,12 @@ impl Program {
         }
     }
 
-    /// Starts a program, attended, and waits until it listens.
+    /// Starts an attended program, and waits until it listens.
     pub(crate) fn start(program: &Command, says: Says) -> Result<Self> {
         let mut attended = Command::new(named("STEPSCOPE_XTASK")?);
         attended.args(["attend", "--"]).arg(program.get_program()).args(program.get_args());
         attended.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        // It outlives this process by a moment, also where a signal ends all of this one's group.
+        // It outlives this process by a moment, even if a signal ends the whole process group.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut attended, 0);
         let mut child = attended.spawn().context("does not start")?;
@@ -76,12 +76,12 @@ impl Program {
         Ok(program)
     }
 
-    /// Reads lines as long as the program runs, since a full pipe would stop it; `said` while somebody listens.
+    /// Reads lines while the program runs, because a full pipe would stop it; `said` stores them while they are needed.
     fn hear<R: Read + Send + 'static>(&self, output: R, said: mpsc::Sender<String>) {
         let heard = Arc::clone(&self.heard);
         thread::spawn(move || {
             for line in BufReader::new(output).lines().map_while(Result::ok) {
-                // Once it listens nobody asks what it says.
+                // Once it listens, its output is not needed.
                 let _ = said.send(line.clone());
                 heard.lock().unwrap_or_else(PoisonError::into_inner).push(line);
             }
@@ -109,7 +109,7 @@ impl Program {
         }
     }
 
-    /// What stands behind this in the first line that holds it.
+    /// The rest of the first line with this text, after the text.
     fn line(&self, before: &str, lines: &mpsc::Receiver<String>, end: Instant) -> Result<String> {
         loop {
             match lines.recv_timeout(end.saturating_duration_since(Instant::now())) {
@@ -126,7 +126,7 @@ impl Program {
         }
     }
 
-    /// What it and those that it started have said so far.
+    /// The output of the program and its children so far.
     pub(crate) fn heard(&self) -> Vec<String> {
         self.heard.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -134,13 +134,13 @@ impl Program {
 
 impl Drop for Program {
     fn drop(&mut self) {
-        // The end of its input is the word to end; it ends what it attends first.
+        // The end of its input makes it end its children, and then itself.
         drop(self.child.stdin.take());
         let _ = self.child.wait();
     }
 }
 
-/// A folder that goes with its owner.
+/// A folder that is removed when it is dropped.
 pub(crate) struct Folder(pub(crate) PathBuf);
 
 impl Folder {
@@ -155,7 +155,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // What a dying server still holds is left to the system's own clearing.
+        // The system removes what an ending server still uses.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

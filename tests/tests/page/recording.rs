@@ -1,6 +1,6 @@
-//! Recordings that are opened: what the dialog says and asks, what it shows in the experiment's place, and what it leaves.
+//! Opening recordings: texts and fields of the dialog, what the views show instead of the experiment, and what remains.
 //!
-//! What the page shows is held against the same text opened natively.
+//! The page is compared with the same text opened natively.
 
 use std::{f64::consts::PI, fmt::Write as _, io::Cursor};
 
@@ -35,9 +35,9 @@ use crate::{
 
 /// Steps of the recorded motion.
 const STEPS: u32 = 200;
-/// How long it takes, in s.
+/// Duration in s.
 const DURATION_S: f64 = 0.2;
-/// A pulse that is too narrow for an A4988 comes as often.
+/// Number of pulses that are too short for an A4988.
 const NARROW_EVERY: u32 = 10;
 
 const DIALOG: &str = "document.querySelector('dialog.recording')";
@@ -55,7 +55,7 @@ pub(crate) const SHOW: &str = "dialog.recording button.main";
 pub(crate) const READY: &str = "document.querySelector('dialog.recording button.main')?.disabled === false";
 pub(crate) const MESSAGE: &str = "document.getElementById('link-message').innerText";
 
-/// What a firmware made of a cosine of 200 steps, as Saleae Logic saves it: no pulse comes in time.
+/// A cosine of 200 steps from firmware, in the format of Saleae Logic: no pulse is on time.
 pub(crate) fn cosine() -> String {
     let mut table = "Time [s],X_STEP,X_DIR\n0.000000000,0,0\n0.010000000,0,1\n".to_owned();
     for step in 0..STEPS {
@@ -68,7 +68,7 @@ pub(crate) fn cosine() -> String {
     table
 }
 
-/// Some signals of a run, as Saleae Logic saves them.
+/// Some signals of a run, in the format of Saleae Logic.
 pub(crate) fn saleae(trace: &[Record], clock_hz: u32, signals: &[(&str, u64)]) -> String {
     let head: Vec<&str> = signals.iter().map(|(name, _)| *name).collect();
     let mut table = format!("Time [s],{}\n", head.join(","));
@@ -80,7 +80,7 @@ pub(crate) fn saleae(trace: &[Record], clock_hz: u32, signals: &[(&str, u64)]) -
     table
 }
 
-/// A text as the core opens it, beside a model with its first step at a time.
+/// A text opened by the core, next to a model with its first step at this time.
 pub(crate) fn natively(
     text: &str,
     options: &OpenOptions,
@@ -98,13 +98,13 @@ pub(crate) fn digest(opened: &LoadedCapture) -> String {
     format!("{:016x}", digest.value())
 }
 
-/// When a model steps first, in s.
+/// Time of a model's first step, in s.
 fn first_step_s(known: &Known) -> Result<f64> {
     let steps = steps(&known.recording.trace, 0);
     Ok(known.seconds(steps.first().context("it steps")?.cycle))
 }
 
-/// Chooses a file by the page's own input.
+/// Selects a file with the page's own input.
 pub(crate) async fn choose_file(page: &Session, name: &str, text: &str) -> Result<()> {
     let script = "const data = new DataTransfer(); data.items.add(new File([arguments[1]], arguments[0]));
         const input = document.getElementById('open-file'); input.files = data.files;
@@ -112,7 +112,7 @@ pub(crate) async fn choose_file(page: &Session, name: &str, text: &str) -> Resul
     page.js::<bool>(script, vec![json!(name), json!(text)]).await.map(drop)
 }
 
-/// Waits until the dialog says so of the recording.
+/// Waits for this text in the dialog.
 pub(crate) async fn says(page: &Session, text: &str) -> Result<()> {
     page.until(&format!("{RESULT}.includes({})", json!(text))).await
 }
@@ -122,7 +122,7 @@ fn named(name: &str) -> String {
     format!("dialog.recording [aria-label=\"{name}\"]")
 }
 
-/// Types into a field of the dialog, in place of what stands there.
+/// Replaces the text of a field of the dialog.
 pub(crate) async fn type_into(page: &Session, label: &str, text: &str) -> Result<()> {
     let script = "const label = [...document.querySelectorAll('dialog.recording label')].find((label) => label.textContent.startsWith(arguments[0]));
         const input = label.control; input.value = arguments[1];
@@ -135,8 +135,8 @@ pub(crate) async fn shown_map(page: &Session) -> Result<Vec<String>> {
     page.eval(MAP).await
 }
 
-/// Chooses the signal of a channel, such as RX, STEP3 or DIR0,1. WebDriver's choice is a change, without the input event of a
-/// user's.
+/// Selects the signal of a channel, such as RX, STEP3 or DIR0,1. Unlike a user, WebDriver sends a change event, but no input
+/// event.
 pub(crate) async fn choose_signal(page: &Session, channel: &str, signal: &str) -> Result<()> {
     let (kind, motors) =
         signal.split_at(signal.find(|each: char| each.is_ascii_digit()).unwrap_or(signal.len()));
@@ -148,7 +148,7 @@ pub(crate) async fn choose_signal(page: &Session, channel: &str, signal: &str) -
     Ok(())
 }
 
-/// Sets a field as a user's input does.
+/// Sets a field like a user.
 pub(crate) async fn set(page: &Session, css: &str, value: &str) -> Result<()> {
     let script = "const field = document.querySelector(arguments[0]); field.value = arguments[1];
         return field.dispatchEvent(new Event('input', { bubbles: true }));";
@@ -198,12 +198,12 @@ fn a_recording_is_mapped_and_shown_next_to_the_model_until_undo() -> Result<()> 
         assert_eq!(page.field("title").await?.value, "recorded: mine.csv");
         let edges = opened.records.len() - 1;
         page.until(&format!("document.getElementById('status').textContent.replace(/\\u202f/g, '').startsWith('{edges} edges')")).await?;
-        // No run has the recording's digests, so none of them goes with its link.
+        // No run has the recording's digests, so the link has none.
         page.click("#share").await?;
         page.until("document.getElementById('link-text').value.includes('#c=')").await?;
         ensure!(!page.eval::<bool>("/[&]d=/.test(document.getElementById('link-text').value)").await?);
         page.click("#share").await?;
-        // Each step is compared with the model's, and the one that is off most can be shown.
+        // Each step is compared with the model's, and the worst one can be shown.
         page.until(&format!(
             "{MESSAGE}.startsWith('Compared with the baseline: 200 steps, the baseline has 800')"
         ))
@@ -213,7 +213,7 @@ fn a_recording_is_mapped_and_shown_next_to_the_model_until_undo() -> Result<()> 
             said.contains("mine.csv") && said.contains("Undo") && said.contains("Go to this time"),
             "{said}"
         );
-        // The message may be closed: the experiment's note has it.
+        // The message can be closed, because the experiment's note has it.
         let note = page.field("note").await?.value;
         ensure!(note.contains("Compared with the baseline: 200 steps, the baseline has 800"), "{note}");
         page.until("document.getElementById('chart-position').checkVisibility() && document.body.innerText.includes('Compared with the baseline: the experiment')").await?;
@@ -237,7 +237,7 @@ fn a_recording_is_mapped_and_shown_next_to_the_model_until_undo() -> Result<()> 
         page.click("#redo").await?;
         page.until_digest(&digest(&opened)).await?;
 
-        // Another source is no recording: the model's run of it is shown.
+        // Another source is no recording: the views show the model's run.
         let mut scenario: Value = serde_json::from_str(&opened.shown_scenario("mine.csv", false).to_json())?;
         let start = &mut scenario["source"]["segments"]["channels"][0]["start_cycle"];
         ensure!(start.is_u64(), "{start}");
@@ -256,7 +256,7 @@ fn a_recording_is_aligned_by_a_step_that_both_have() -> Result<()> {
         page.until_digest(&own.digest).await?;
         choose_file(&page, "mine.csv", &text).await?;
         says(&page, "200 steps, 200 right and 0 left").await?;
-        // Alone there is nothing to align by.
+        // Without an experiment there is no alignment.
         let aligned = "#recording-aligned-by-step";
         page.click("#recording-compare").await?;
         ensure!(!page.visible(aligned).await?);
@@ -300,7 +300,7 @@ fn recorded_pulses_are_checked_and_their_map_is_remembered() -> Result<()> {
         says(&page, "200 right").await?;
         page.click(&named("X_DIR is inverted")).await?;
         says(&page, "200 left").await?;
-        // Alone: nothing is moved to the model's first step.
+        // Without an experiment nothing is moved to the model's first step.
         page.click("#recording-compare").await?;
         says(&page, "200 left").await?;
         page.until(READY).await?;
@@ -316,7 +316,7 @@ fn recorded_pulses_are_checked_and_their_map_is_remembered() -> Result<()> {
                 )
                 .await?
         );
-        // Its acceleration is drawn: as great as its figures have it.
+        // Its acceleration is drawn, with the maximum of the figures.
         let greatest = opened.report.channels[0].figures.greatest_acceleration_steps_s2.context("steps")?;
         let label = "document.getElementById('chart-acceleration').getAttribute('aria-label').replace(/\\u202f/g, '')";
         page.until("document.getElementById('chart-acceleration').checkVisibility()").await?;
@@ -343,7 +343,7 @@ fn recorded_pulses_are_checked_and_their_map_is_remembered() -> Result<()> {
         .await?;
         page.until_digest(&digest(&opened)).await?;
 
-        // Other channels, another map; the same again, and it is the one that was made.
+        // Other channels have another map; the same channels again have the stored one.
         choose_file(&page, "other.csv", &text.replace("X_DIR", "X_DIRECTION")).await?;
         says(&page, "200 right").await?;
         cancel(&page).await?;
@@ -379,7 +379,7 @@ fn missing_information_is_requested_and_errors_are_reported() -> Result<()> {
         page.picture("recording-asked").await?;
         cancel(&page).await?;
 
-        // Channels whose names say nothing, and that do nothing.
+        // Channels without meaningful names or behavior.
         choose_file(&page, "quiet.csv", "Time [s],D0,D1\n0.0,0,0\n").await?;
         says(&page, "Choose which channel is STEP, DIR, RX or TX").await?;
         let shown =
@@ -390,7 +390,7 @@ fn missing_information_is_requested_and_errors_are_reported() -> Result<()> {
         page.until(READY).await?;
         cancel(&page).await?;
 
-        // Cut off, and torn: what could be read is there.
+        // Truncated and damaged files: the readable part is there.
         let text = cosine();
         let torn: String =
             text.lines().take(102).chain(["0.1,maybe,1"]).map(|line| format!("{line}\n")).collect();
@@ -403,10 +403,10 @@ fn missing_information_is_requested_and_errors_are_reported() -> Result<()> {
         page.picture("recording-torn").await?;
         cancel(&page).await?;
 
-        // Nothing that can be read.
+        // Nothing readable.
         choose_file(&page, "photo.bin", "\u{0}\u{1}nothing\u{0}").await?;
         page.until(&format!("{MESSAGE}.includes('photo.bin cannot be opened') && {CLOSED}")).await?;
-        // All is as it was, and there is nothing to undo.
+        // Nothing has changed, and there is nothing to undo.
         page.until_digest(&own.digest).await?;
         ensure!(page.eval::<bool>("document.getElementById('undo').disabled").await?);
         Ok(())
@@ -437,7 +437,7 @@ fn dropped_bytes_and_positions_become_packets_and_steps() -> Result<()> {
         ))
         .await?;
 
-        // Positions, pasted: the model steps at their times.
+        // Pasted positions: the model steps at their times.
         let table = (0..=40).fold("time_s,position\n".to_owned(), |mut table, step| {
             let _ = writeln!(table, "{:.4},{step}", 0.1 + 0.001 * f64::from(step));
             table
@@ -467,7 +467,7 @@ fn a_selected_part_keeps_the_figures_of_the_whole_recording() -> Result<()> {
         let text = cosine();
         choose_file(&page, "mine.csv", &text).await?;
         says(&page, "200 steps").await?;
-        // The fields stand there where a recording is too long; here they are filled all the same.
+        // The fields appear if a recording is too long; here they are filled anyway.
         let is_there = "document.getElementById('recording-show-from').checkVisibility()";
         ensure!(!page.eval::<bool>(is_there).await?, "all of it is shown");
         type_into(&page, "Show from", "0.1").await?;
@@ -581,7 +581,7 @@ fn the_dialog_works_with_keys_and_on_narrow_screens() -> Result<()> {
 
         page.until("document.activeElement.id === 'open'").await?;
 
-        // Escape leaves, and the page is where it was.
+        // Escape closes the dialog, and the page is unchanged.
         choose_file(&page, "again.csv", &text).await?;
         says(&page, "200 left").await?;
         key(&page, &[], '\u{e00c}').await?;

@@ -1,5 +1,5 @@
-//! Recordings of the kinds that people have: the dialog proposes the same map and shows the same figures as the core, and both
-//! are right.
+//! Recordings of common kinds: the dialog proposes the same map and shows the same figures as the core, and both
+//! are correct.
 
 use std::{fs, io::Cursor};
 
@@ -15,20 +15,20 @@ use crate::{
     session::Session,
 };
 
-/// Recordings with known right answers, which the command's tests have, too.
+/// Recordings with known results, which the command's tests also use.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../cli/tests/recordings");
 
-/// The dialog shows what the file holds.
+/// Checks that the dialog shows the contents of the file.
 const TABLE: &str = "document.querySelector('dialog.recording h2') !== null";
 
-/// A file, what is chosen and typed in its dialog, and what it then says.
+/// A file, the input in its dialog, and the result.
 struct Case {
     file: &'static str,
-    /// Channels with the signals that are chosen for them.
+    /// Channels with their selected signals.
     signals: &'static [(&'static str, &'static str)],
-    /// Fields with what is typed into them.
+    /// Fields with their input.
     fields: &'static [(&'static str, &'static str)],
-    /// The same for the core.
+    /// The same as options of the core.
     options: fn() -> OpenOptions,
     expected: &'static [&'static str],
 }
@@ -79,7 +79,7 @@ const CASES: &[Case] = &[
     Case::new("iso.txt", &["3 bytes", "10 ms"]),
 ];
 
-/// A file as the core opens it.
+/// A file opened by the core.
 fn opened(text: &str, options: &OpenOptions) -> Result<LoadedCapture> {
     let reading = read(Cursor::new(text), &Limits::default(), &mut |_| true);
     ensure!(reading.error.is_none(), "{:?}", reading.error);
@@ -145,7 +145,7 @@ fn a_map_with_a_shared_dir_is_imported_and_remembered() -> Result<()> {
         }
         says(&page, "Channel 0: 2 steps, 1 right and 1 left").await?;
         says(&page, "Channel 1: 2 steps, 1 right and 1 left").await?;
-        // An error is under its field, and nothing is lost.
+        // An error is below its field, and nothing is lost.
         for (motors, why) in [
             ("0, 16", "Motor 16 is out of range; use 0 to 15, several as 0, 1."),
             ("x", "“x” is not a motor; use 0 to 15, several as 0, 1."),
@@ -165,7 +165,7 @@ fn a_map_with_a_shared_dir_is_imported_and_remembered() -> Result<()> {
         choose_file(&page, "second.csv", text).await?;
         says(&page, "Channel 1: 2 steps, 1 right and 1 left").await?;
         assert_eq!(shown_map(&page).await?, ["DIR0=D2", "DIR1=D2", "STEP0=D0", "STEP1=D1"]);
-        // A new signal of a motor begins at the first one that has none.
+        // A new signal of a motor starts at the first motor without one.
         choose_signal(&page, "D1", "").await?;
         choose_signal(&page, "D1", "STEP").await?;
         assert_eq!(shown_map(&page).await?, ["DIR0=D2", "DIR1=D2", "STEP0=D0", "STEP1=D1"]);

@@ -1,4 +1,4 @@
-//! A recording is there after a reload, with a link and without; what storage lost, damaged or refused is said.
+//! A recording survives a reload, with and without a link; lost, damaged or refused storage is reported.
 
 use std::{fmt::Write as _, time::Duration};
 
@@ -14,7 +14,7 @@ use crate::{
     session::Session,
 };
 
-/// Steps that wander, as Saleae Logic saves them; of many there is no link.
+/// Irregular steps, in the format of Saleae Logic; many of them are too long for a link.
 fn wandering(steps: u32) -> String {
     let mut table = "Time [s],STEP,DIR\n0.000000000,0,1\n".to_owned();
     let mut at_ns = 10_000_000;
@@ -25,7 +25,7 @@ fn wandering(steps: u32) -> String {
     table
 }
 
-/// Opens a file, not beside the experiment, and waits until the views show it.
+/// Opens a file without the experiment, and waits until the views show it.
 async fn open(page: &Session, name: &str, text: &str) -> Result<LoadedCapture> {
     choose_file(page, name, text).await?;
     page.until(READY).await?;
@@ -50,12 +50,12 @@ async fn reload(page: &Session) -> Result<()> {
     page.ready().await
 }
 
-/// The digest of what the model makes of it.
+/// The digest of its model.
 fn model(opened: &LoadedCapture, name: &str) -> Result<String> {
     Ok(Known::of(&opened.shown_scenario(name, false).to_json())?.digest)
 }
 
-/// Works on the database of recordings, in the page.
+/// Accesses the database of recordings, in the page.
 async fn database(page: &Session, work: &str) -> Result<()> {
     let script = format!(
         "return new Promise((resolve, reject) => {{
@@ -104,12 +104,12 @@ fn a_recording_survives_edits_reloads_and_a_new_tab() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.js::<bool>("history.replaceState = () => {}; return true;", Vec::new()).await?;
-        // A pulse of other width than the others: the model's, whose width is one, differs.
+        // A pulse of another width: the model, which has one width, differs.
         let text = wandering(100).replacen(",0,1\n0.0", ",0,1\n0.009000000,1,1\n0.009500000,0,1\n0.0", 1);
         let opened = open(&page, "mine.csv", &text).await?;
         let (recorded, made) = (digest(&opened), model(&opened, "mine.csv")?);
         ensure!(recorded != made, "what is shown tells which it is");
-        // Left before its link stood in the address.
+        // The page was left before the link was in the address.
         assert_eq!(page.eval::<String>("location.hash").await?, "");
         reload(&page).await?;
         page.until_digest(&recorded).await?;
@@ -118,10 +118,10 @@ fn a_recording_survives_edits_reloads_and_a_new_tab() -> Result<()> {
         page.until_digest(&recorded).await?;
         reload(&page).await?;
         page.until_digest(&recorded).await?;
-        // A new visit begins with the own work.
+        // A new visit starts with the user's own work.
         page.open("").await?;
         page.until_digest(&recorded).await?;
-        // Another experiment has none of it.
+        // Another experiment has no recording.
         page.open(&format!("#{}", Known::of("{}")?.link)).await?;
         page.until_digest(&Known::of("{}")?.digest).await?;
         page.click("#undo").await?;
@@ -135,7 +135,7 @@ fn storage_failures_are_reported_once_and_show_the_model() -> Result<()> {
         page.open("").await?;
         let text = wandering(100).replacen(",0,1\n0.0", ",0,1\n0.009000000,1,1\n0.009500000,0,1\n0.0", 1);
         let spoilt = [
-            // A byte that is no level's, a piece too short, times that go back, no piece, no recording, a scenario that is none.
+            // An invalid level, a short piece, falling times, a missing piece, a missing recording, an invalid scenario.
             (
                 "pieces.openCursor().onsuccess = ({ target: { result } }) => { if (!result) return; result.value[23] = 0xff; result.update(result.value); result.continue(); };",
                 "damaged",
@@ -174,7 +174,7 @@ fn storage_failures_are_reported_once_and_show_the_model() -> Result<()> {
             sleep(Duration::from_millis(300)).await;
             assert_eq!(page.text("#link-message").await?, "", "{work}: it is said once");
         }
-        // Storage that refuses from the start.
+        // Storage that fails from the start.
         page.eval::<bool>("(indexedDB.constructor.prototype.open = () => { throw new DOMException('no room', 'QuotaExceededError'); }, true)").await?;
         let opened = open(&page, "mine.csv", &text).await?;
         ensure!(
@@ -186,7 +186,7 @@ fn storage_failures_are_reported_once_and_show_the_model() -> Result<()> {
         reload(&page).await?;
         page.until_digest(&model(&opened, "mine.csv")?).await?;
         page.until(&format!("{MESSAGE}.includes('no longer available: the browser cannot save it')")).await?;
-        // And lists of it that are none.
+        // And invalid lists of it.
         for text in ["{", "7", "null", "[null,5]", "[]"] {
             page.js::<bool>("return (localStorage.setItem('stepscope.recordings', arguments[0]), sessionStorage.setItem('stepscope.recording', arguments[0]), true)", vec![json!(text)]).await?;
             reload(&page).await?;

@@ -1,5 +1,5 @@
-//! A part of a recording: its file is there for another part as long as it is on show; all of it at a glance; and its records
-//! on their way to the engine.
+//! Parts of a recording: the file stays available for another part while the recording is visible; the overview; and the
+//! transfer of its records to the engine.
 
 use std::time::Duration;
 
@@ -15,9 +15,9 @@ use crate::{
     session::{CONTROL, Session},
 };
 
-/// The button for another part, of these files.
+/// The button for another part of these files.
 const AGAIN: &str = "[...document.querySelectorAll('#on-show button')].map((button) => button.getAttribute('aria-label')).join()";
-/// Counts the workers that are ended, and what is asked of that of a file.
+/// Counts the ended workers, and the requests to that of a file.
 const WATCH: &str = "window.ended = 0; window.overviews = 0; window.failing = false;
     const { terminate, postMessage } = Worker.prototype;
     Worker.prototype.terminate = function () { window.ended += 1; terminate.call(this); };
@@ -27,7 +27,7 @@ const WATCH: &str = "window.ended = 0; window.overviews = 0; window.failing = fa
         return postMessage.call(this, window.failing ? { ...message, method: 'nothing' } : message, ...more);
     };
     return true;";
-/// All of the recording at a glance: what is said of it, and whether something is drawn.
+/// The overview of a recording: its text, and whether something is drawn.
 const SAID: &str = "document.querySelector('.whole p')?.textContent";
 const DRAWN: &str = "(() => { const canvas = document.querySelector('.whole canvas');
     return canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.some((part) => part > 0); })()";
@@ -70,7 +70,7 @@ fn the_file_of_a_part_is_released_when_no_longer_shown() -> Result<()> {
                 "preset" => page.preset("exact-sine").await?,
                 "source" => page.fill("clock_hz", "8000000").await?,
                 "link" => page.follow(&own.link).await?,
-                // Its dialog goes with it.
+                // Its dialog is removed with it.
                 _ => {
                     page.click("#on-show button").await?;
                     page.until(READY).await?;
@@ -84,7 +84,7 @@ fn the_file_of_a_part_is_released_when_no_longer_shown() -> Result<()> {
             page.until_equal(ended, &json!(file + 1)).await?;
             page.until_equal(AGAIN, &json!("")).await?;
         }
-        // Of another file's part there is that file's button alone.
+        // With a part of another file, only that file has the button.
         show_part(&page, "mine.csv", &text).await?;
         show_part(&page, "other.csv", &text).await?;
         assert_eq!(page.eval::<usize>(ended).await?, 6);
@@ -103,7 +103,7 @@ fn the_overview_is_requested_once_per_width() -> Result<()> {
         page.until(&seen).await?;
         page.until(READY).await?;
         page.until_equal("window.overviews", &json!(1)).await?;
-        // As a window's edge is drawn.
+        // As while a window's edge is dragged.
         let widths = "const whole = document.querySelector('.whole');
             return (async () => {
                 for (let width = 300; width < 320; width++) {
@@ -120,7 +120,7 @@ fn the_overview_is_requested_once_per_width() -> Result<()> {
         let asked: u32 = page.eval("window.overviews").await?;
         ensure!((2..=4).contains(&asked), "{asked} for 20 widths");
 
-        // Where it fails, nothing that was drawn before stands for it, and all else is as it was.
+        // After a failure the old overview is removed, and everything else is unchanged.
         page.eval::<bool>("window.failing = true").await?;
         type_into(&page, "Clock", "8000000").await?;
         says(&page, "at 8 MHz").await?;
@@ -135,7 +135,7 @@ fn the_overview_is_requested_once_per_width() -> Result<()> {
         page.click(SHOW).await?;
         page.until(CLOSED).await?;
 
-        // Of samples the rate says how long they are, whatever the clock.
+        // The sample rate determines the duration, regardless of the clock.
         let samples: String = (0..400).map(|at| format!("{}\n", u8::from(at % 20 < 2))).collect();
         choose_file(&page, "samples.csv", &format!("STEP\n{samples}")).await?;
         says(&page, "has no sample rate").await?;

@@ -1,4 +1,4 @@
-//! What was recorded on TX in the table of packets: of a device that was silent, of one alone, and of several on one line.
+//! Recorded replies on TX in the packet table: of a silent device, of a single one, and of several on one line.
 
 use anyhow::{Context, Result, ensure};
 use stepscope_core::inspect::packets::log::RowOutcome;
@@ -21,10 +21,10 @@ use crate::{
 const FRAMED: &str = r#"{"line":{"protocol":"framed"}}"#;
 const TWO: &str = r#"{"line":{"protocol":"framed","address":3},"controllers":[
     {"address":7,"axes":[{"moves":[{"cosine":{"distance":{"steps":200}}}]}]}]}"#;
-/// Whether the header says that a recording is on show.
+/// Whether the header shows that the views show a recording.
 const ON_SHOW: &str = "document.getElementById('on-show').checkVisibility()";
 
-/// Opens a file and shows it, not beside the experiment.
+/// Opens a file and shows it, without the experiment.
 async fn open(page: &Session, name: &str, text: &str) -> Result<()> {
     choose_file(page, name, text).await?;
     page.until(READY).await?;
@@ -37,7 +37,7 @@ async fn open(page: &Session, name: &str, text: &str) -> Result<()> {
     page.until(&format!("{MESSAGE}.startsWith('Opened {name}')")).await
 }
 
-/// Waits until the table has so many rows.
+/// Waits until the table has this number of rows.
 async fn rows(page: &Session, count: usize) -> Result<()> {
     let said = "document.getElementById('packets-count').textContent.replace(/\\u202f/g, '')";
     page.until(&format!("{said}.startsWith('{count} on the line')")).await
@@ -95,7 +95,7 @@ fn a_recording_of_replies_only_survives_a_reload() -> Result<()> {
     })
 }
 
-/// What an analyser has of a line with two controllers: what the host sends, and what both answer.
+/// A recording of a line with two controllers: the bytes of the host and of both controllers.
 fn at_the_line(traces: [&[Record]; 2]) -> Vec<Record> {
     let mut cycles: Vec<_> =
         traces.iter().flat_map(|trace| trace.iter().map(|record| record.cycle)).collect();
@@ -103,7 +103,7 @@ fn at_the_line(traces: [&[Record]; 2]) -> Vec<Record> {
     cycles.dedup();
     let record = |cycle| {
         let [first, second] = traces.map(|trace| levels_at(trace, cycle));
-        // The first one hears the host, and the second one's answers, which are low where this sends a 0.
+        // The first one receives the host, and the second one's replies, which are low where it sends a 0.
         let rx = first.has(Levels::RX) || !second.has(Levels::TX);
         let tx = first.has(Levels::TX) && second.has(Levels::TX);
         let level = |high, mask| if high { mask } else { 0 };

@@ -1,5 +1,5 @@
-//! A recording in the views: its acceleration at the cursors, its replies in the table of packets, which of both is on show, and a
-//! part of it that is picked from the whole.
+//! A recording in the views: its acceleration at the cursors, its replies in the packet table, its label, and a
+//! part that is selected in the overview.
 
 use std::io::Cursor;
 
@@ -32,16 +32,16 @@ use crate::{
     session::{ALT, RELEASE, SHIFT, Session},
 };
 
-/// Whether the header says that a recording is on show.
+/// Whether the header shows that the views show a recording.
 const ON_SHOW: &str = "document.getElementById('on-show').checkVisibility()";
 const RIGHT: char = '\u{e014}';
 /// The times of the part in the dialog.
 const TIMES: &str =
     "['from', 'up-to'].map((name) => document.getElementById(`recording-show-${name}`).value)";
-/// How much longer than the model a recorded device takes for its replies, in cycles.
+/// Additional delay of a recorded device's replies, relative to the model, in cycles.
 const LATER: u64 = 500;
 
-/// Shows what the dialog has, alone.
+/// Shows the recording of the dialog, without the experiment.
 async fn show(page: &Session) -> Result<()> {
     page.until(READY).await?;
     if page.visible("#recording-compare").await? {
@@ -109,7 +109,7 @@ fn a_recordings_acceleration_is_read_at_both_cursors() -> Result<()> {
     })
 }
 
-/// Both lines of a run, with a device that takes longer for each reply, and a motor's pulses, if there are some.
+/// Both lines of a run, with a device that replies later, and the pulses of a motor, if there are some.
 fn with_late_replies(trace: &[Record], clock_hz: u32) -> String {
     let mut changes: Vec<(u64, u64, bool)> = Vec::new();
     let mut before = Levels::RESET;
@@ -141,7 +141,7 @@ fn recorded_replies_and_turnarounds_survive_a_reload() -> Result<()> {
         choose_file(&page, "link.csv", &with_late_replies(&framed.recording.trace, clock_hz)).await?;
         says(&page, "TX: 115200 baud").await?;
         show(&page).await?;
-        // The model's table has as many rows.
+        // The model's table has the same number of rows.
         page.until(ON_SHOW).await?;
         let run = framed.experiment.run(&mut StoredRun::default());
         let table = PacketTable::new(&framed.experiment, &run, 0, &framed.recording.packets);
@@ -160,7 +160,7 @@ fn recorded_replies_and_turnarounds_survive_a_reload() -> Result<()> {
             page.eval::<bool>("(document.getElementById('packet-inspector').open = true)").await?;
             page.until("document.getElementById('packet-facts').textContent.includes('turnaround')").await?;
             let facts: String = page.eval("document.getElementById('packet-facts').textContent").await?;
-            // A reply's start is where its start bit was heard: within a bit of the cycle in which it was sent.
+            // A reply starts at the detected start bit: within one bit of the cycle in which it was sent.
             let said = facts.split_once("turnaround").context("it answers")?.1.trim().to_owned();
             let micros: f64 = said
                 .split(['\u{a0}', ' ', '\u{202f}'])
@@ -198,13 +198,13 @@ fn the_header_labels_a_recording_and_is_short_on_phones() -> Result<()> {
         page.until(ON_SHOW).await?;
         page.until(&format!("{MESSAGE}.startsWith('Opened mine.csv. The views show the recording.')"))
             .await?;
-        // Its message may be closed: the word stays.
+        // Its message can be closed: the label stays.
         page.click("#link-message .close").await?;
         ensure!(page.eval::<bool>(ON_SHOW).await?);
         page.fill("title", "another name").await?;
         page.until("document.title.startsWith('another name')").await?;
         ensure!(page.eval::<bool>(ON_SHOW).await?, "a name changes nothing of what is on show");
-        // Another source is the model's.
+        // With another source the views show the model.
         page.fill("source.segments.channels[0].start_cycle", "801").await?;
         page.until(&format!("!{ON_SHOW}")).await?;
 
@@ -254,9 +254,9 @@ fn a_part_is_selected_by_dragging_on_the_overview() -> Result<()> {
             "{times:?} of {end_s}"
         );
         page.picture("recording-part").await?;
-        // What it comes to is of all, and so is what is seen of it.
+        // The figures and the overview are of the whole recording.
         says(&page, "200 steps, 200 right and 0 left").await?;
-        // A press takes all of it again, and the same part is picked by its times.
+        // A press selects the whole recording again, and its times select the same part.
         page.js::<bool>(drag, vec![json!(0.2), json!(0.2)]).await?;
         page.until("document.getElementById('recording-show-from').checkVisibility() === false").await?;
         page.until(READY).await?;
@@ -269,7 +269,7 @@ fn a_part_is_selected_by_dragging_on_the_overview() -> Result<()> {
         let part = Part { max_records: 20_000_000, from_s: Some(from_s), to_s: Some(to_s) };
         page.until_digest(&digest(&LoadedCapture::of_part(&capture, &OpenOptions::default(), &part)?))
             .await?;
-        // From there on another part is chosen without the file being opened again.
+        // From there another part is selected without opening the file again.
         page.until(ON_SHOW).await?;
         page.click("#on-show button").await?;
         page.until(&seen).await?;
@@ -287,7 +287,7 @@ fn a_part_is_selected_by_dragging_on_the_overview() -> Result<()> {
         let part = Part { max_records: 20_000_000, from_s: Some(from_s), to_s: Some(to_s) };
         page.until_digest(&digest(&LoadedCapture::of_part(&capture, &OpenOptions::default(), &part)?))
             .await?;
-        // All of it is shown as any recording is, and there is no other part.
+        // The whole recording is shown like any other, without a selection of parts.
         page.click("#on-show button").await?;
         page.until(&seen).await?;
         page.until(READY).await?;
@@ -313,7 +313,7 @@ fn records_of_a_long_recording_are_sent_in_pieces() -> Result<()> {
             Worker.prototype.postMessage = function (message, ...more) {
                 const size = (value) => value instanceof Uint8Array ? value.byteLength : Array.isArray(value) ? value.reduce((sum, each) => sum + size(each), 0)
                     : value && typeof value === 'object' && !(value instanceof File) ? size(Object.values(value)) : 0;
-                // How much goes in one task.
+                // Maximum size of one transfer.
                 if (!window.task) { window.task = true; window.sent.push(0); setTimeout(() => { window.task = false; }); }
                 window.sent[window.sent.length - 1] += size(message);
                 return post.call(this, message, ...more);
@@ -325,7 +325,7 @@ fn records_of_a_long_recording_are_sent_in_pieces() -> Result<()> {
         show(&page).await?;
         page.until("document.getElementById('status').textContent.replace(/\\u202f/g, '').startsWith('1200000 edges')").await?;
         let sent: Vec<u64> = page.eval("window.sent.filter((size) => size > 0)").await?;
-        // 16 bytes for each of the 1 200 001 records, no more than 8 MiB of them at once.
+        // 16 bytes for each of the 1 200 001 records, at most 8 MiB of them at once.
         assert_eq!(sent.iter().sum::<u64>(), 16 * 1_200_001, "{sent:?}");
         ensure!(sent.iter().all(|size| *size <= 8 << 20), "{sent:?}");
         ensure!(page.eval::<bool>(ON_SHOW).await?);

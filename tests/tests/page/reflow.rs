@@ -1,12 +1,12 @@
-//! Small screens and large letters: nothing is cut off, nothing lies on something else, all can be hit by a finger.
+//! Small screens and large text: nothing is cut off or covered, and all targets are large enough for a finger.
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 
 use crate::{bench::in_browser, session::Session};
 
-/// Targets smaller than 24 CSS pixels either way (WCAG 2.5.8). Links within a sentence are exempt, and so is what has
-/// a label around it that is large enough.
+/// Targets smaller than 24 CSS pixels in width or height (WCAG 2.5.8). Links within a sentence are exempt, and so are targets
+/// with a label around them that is large enough.
 pub(crate) const SMALL: &str = "
     const wanted = 'button, input, select, textarea, summary, a[href], [role=tab], [role=button], canvas[tabindex]';
     return [...document.querySelectorAll(wanted)].filter((node) => node.checkVisibility({ visibilityProperty: true }) && !node.closest('.unseen, .skip, p a'))
@@ -14,11 +14,11 @@ pub(crate) const SMALL: &str = "
         .filter(([, box]) => box.width < 23.9 || box.height < 23.9)
         .map(([node, box]) => `${node.id || node.ariaLabel || node.textContent.trim().slice(0, 30) || node.dataset.path} is ${box.width.toFixed(1)} x ${box.height.toFixed(1)}`);";
 
-/// Texts that a box without a scroll bar cuts off. A table's cell, a choice and what ends in an ellipsis tell the rest otherwise.
+/// Texts that a box without a scroll bar cuts off, except table cells, choices and texts with an ellipsis.
 pub(crate) const CUT: &str = "
     const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
     const found = new Set();
-    // Most texts are in the same boxes: each box is asked once. What can be scrolled to is not lost.
+    // Most texts share boxes: each box is measured once. Scrollable content is not lost.
     const known = new Map();
     const about = (node) => {
         if (!known.has(node)) {
@@ -48,16 +48,16 @@ pub(crate) const CUT: &str = "
     }
     return [...found];";
 
-/// Controls and labels that lie on each other.
+/// Controls and labels that overlap.
 const OVERLAPS: &str = "
     const nodes = [...document.querySelectorAll('button, input, select, textarea, summary, label, h1, h2, legend, .unit, output, .legend, #status')]
-        // On a narrow screen the footer stays in sight over what scrolls.
+        // On a narrow screen the footer stays visible above scrolling content.
         .filter((node) => node.checkVisibility({ visibilityProperty: true }) && !node.closest('.unseen, .skip, .caption, footer') && !node.querySelector(':scope > .unseen'))
         .map((node) => [node, node.getBoundingClientRect()]).filter(([, box]) => box.width > 0 && box.height > 0);
     const meet = (a, b) => ({
         left: Math.max(a.left, b.left), right: Math.min(a.right, b.right), top: Math.max(a.top, b.top), bottom: Math.min(a.bottom, b.bottom),
     });
-    // What the boxes around a node leave to be seen; each box is asked once.
+    // The part of a node that the boxes around it leave visible; each box is measured once.
     const known = new Map([[null, { left: -Infinity, right: Infinity, top: -Infinity, bottom: Infinity }]]);
     const within = (box) => {
         if (!known.has(box)) {
@@ -76,18 +76,18 @@ const OVERLAPS: &str = "
     }
     return found;";
 
-/// What one look at the page gives.
+/// Results of one check of the page.
 #[derive(serde::Deserialize)]
 struct Seen {
-    /// The content's width, and the window's, in CSS pixels.
+    /// Widths of the content and of the window, in CSS pixels.
     wide: (u32, u32),
-    /// What breaks each rule.
+    /// Violations of each rule.
     rules: Vec<(String, Vec<String>)>,
 }
 
-/// Everything that is wrong with what is on show, each with the place where it was seen.
+/// All violations of the visible page, each with its location.
 async fn look(page: &Session, place: &str, wrong: &mut Vec<String>) -> Result<()> {
-    // In one call: the page lays itself out once for all rules.
+    // In one call: the page computes its layout once for all rules.
     let rules = [("small", SMALL), ("cut off", CUT), ("overlap", OVERLAPS)];
     let rules: String = rules.map(|(rule, script)| format!("['{rule}', (() => {{ {script} }})()],")).concat();
     let script = format!(
@@ -104,7 +104,7 @@ async fn look(page: &Session, place: &str, wrong: &mut Vec<String>) -> Result<()
     Ok(())
 }
 
-/// Shows each progress line as it looks during long work, which most runs of this test are too fast to see.
+/// Shows each progress line as during long work, which is too fast in most runs of this test.
 const SHOW_PROGRESS: &str = "
     for (const job of document.querySelectorAll('.study-job')) {
         const [text, bar, button] = job.children;
@@ -116,7 +116,7 @@ const SHOW_PROGRESS: &str = "
 const HIDE_PROGRESS: &str =
     "for (const job of document.querySelectorAll('.study-job')) job.hidden = true; return null;";
 
-/// Looks at the whole page: on a narrow screen at every tab, and at the form.
+/// Checks the whole page: on a narrow screen each tab, and the form.
 async fn everywhere(page: &Session, what: &str, wrong: &mut Vec<String>) -> Result<()> {
     let tabs: Vec<String> = page
         .eval("[...document.querySelectorAll('[role=tab]')].filter((tab) => tab.checkVisibility()).map((tab) => tab.id)")
@@ -144,8 +144,8 @@ async fn everywhere(page: &Session, what: &str, wrong: &mut Vec<String>) -> Resu
     look(page, &format!("{what}, form"), wrong).await
 }
 
-/// Looks at the page in windows of these sizes: with the quiet default, which is loaded in each of them, and with the
-/// fullest presets, which are there while the window changes.
+/// Checks the page in windows of these sizes: with the default, which is loaded in each of them, and with the presets with
+/// the most content, which are open while the window changes.
 async fn at_sizes(page: &Session, what: &str, sizes: &[Value], wrong: &mut Vec<String>) -> Result<()> {
     for preset in ["", "driver-timing-broken", "four-controllers-framed", "patent-2019-figure-2"] {
         for (index, size) in sizes.iter().enumerate() {
@@ -157,7 +157,7 @@ async fn at_sizes(page: &Session, what: &str, sizes: &[Value], wrong: &mut Vec<S
                 page.preset(preset).await?;
                 page.ready().await?;
             }
-            // What follows the window's size has followed it by the frame after the next.
+            // The layout has followed the window's size two frames later.
             page.js::<()>(FRAMES, vec![]).await?;
             everywhere(page, &format!("{what} at {} px {preset}", size["width"]), wrong).await?;
         }
@@ -167,7 +167,7 @@ async fn at_sizes(page: &Session, what: &str, sizes: &[Value], wrong: &mut Vec<S
 
 const FRAMES: &str = "return new Promise((seen) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(seen))));";
 
-/// A window of this size and so many device pixels a CSS pixel.
+/// A window of this size, with this number of device pixels per CSS pixel.
 fn window((width, height): (u32, u32), ratio: u32) -> Value {
     json!({ "width": width, "height": height, "deviceScaleFactor": ratio, "mobile": false })
 }
@@ -177,7 +177,7 @@ fn none(wrong: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Puts beside the page what each rule is about.
+/// Adds a violation of each rule to the page.
 const SPOIL: &str = "
     const put = (tag, id, style) => {
         const node = Object.assign(document.createElement(tag), { id, textContent: id });
@@ -255,7 +255,7 @@ fn forced_colors_keep_every_control_and_curve_visible() -> Result<()> {
         page.unfold_spectrum().await?;
         page.picture("forced").await?;
         ensure!(page.eval::<bool>("matchMedia('(forced-colors: active)').matches").await?);
-        // A border is what is left of a button or a field there.
+        // In forced colors, a button or a field still has its border.
         let bare: Vec<String> = page
             .eval(
                 "[...document.querySelectorAll('button, input, select, textarea')].filter((node) => node.checkVisibility() && \
@@ -272,7 +272,7 @@ fn forced_colors_keep_every_control_and_curve_visible() -> Result<()> {
     })
 }
 
-/// Pixels of a canvas with a contrast of 3:1 or more to the ground that it lies on.
+/// Pixels of a canvas with a contrast of at least 3:1 to their background.
 const DRAWN: &str = "
     const canvas = document.getElementById(arguments[0]);
     const part = (c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4);

@@ -1,4 +1,4 @@
-//! The rows of the pulses as the visitor has them: height, order, names, which are hidden; by pointer and by keys.
+//! The rows of the pulses: height, order, names and visibility, by pointer and by keys.
 
 use anyhow::{Result, ensure};
 use fantoccini::actions::{InputSource, MouseActions, PointerAction};
@@ -9,7 +9,7 @@ use crate::{
     session::{CONTROL, ENTER, RELEASE, SHIFT, Session},
 };
 
-/// Keys as WebDriver writes them.
+/// Keys in the notation of WebDriver.
 const UP: char = '\u{e013}';
 /// See [`UP`].
 const DOWN: char = '\u{e015}';
@@ -19,28 +19,28 @@ const ALT: char = '\u{e00a}';
 const SPACE: char = '\u{e00d}';
 /// See [`UP`].
 const ESCAPE: char = '\u{e00c}';
-/// Height of the rows until another is chosen.
+/// Default height of the rows.
 const ROW_PX: f64 = 22.0;
 
-/// How many rows there are, for a screen reader.
+/// The number of rows, for a screen reader.
 async fn until_rows(page: &Session, rows: usize) -> Result<()> {
     page.until(&format!("document.getElementById('pulses').ariaLabel.includes(', {rows} rows,')")).await
 }
 
-/// Names in the panel, from the top: what the user calls them, else their own.
+/// Names in the panel from the top: those of the user, otherwise the defaults.
 async fn names(page: &Session) -> Result<Vec<String>> {
     page.eval("[...document.querySelectorAll('#rows-list input[type=text]')].map((field) => field.value || field.placeholder)")
         .await
 }
 
-/// Opens the panel, and waits for its list, whose script may have to come.
+/// Opens the panel, and waits for its list, whose script may have to load.
 async fn open_panel(page: &Session) -> Result<()> {
     page.click("#rows-open").await?;
     page.until("document.getElementById('rows-list').children.length > 0 && !document.querySelector('#rows-panel [inert]')")
         .await
 }
 
-/// Puts the mouse on a row.
+/// Moves the mouse to a row.
 async fn point(page: &Session, row: usize, row_px: f64) -> Result<()> {
     let place = "(({ left, top, width }) => [left, top, width])(document.getElementById('pulses').getBoundingClientRect())";
     let (left, top, width): (f64, f64, f64) = page.eval(place).await?;
@@ -67,7 +67,7 @@ fn rows_are_named_ordered_and_hidden_permanently() -> Result<()> {
         )
         .await?;
 
-        // The button that is pressed keeps the focus while its line goes up; at the top the other one takes it.
+        // The pressed button keeps the focus while its line moves up; at the top the other one gets it.
         page.click("[aria-label='Move ch 0 up']").await?;
         for _ in 0..3 {
             page.client.active_element().await?.send_keys(&SPACE.to_string()).await?;
@@ -87,7 +87,7 @@ fn rows_are_named_ordered_and_hidden_permanently() -> Result<()> {
         until_reads(&page, "STEP X axis ").await?;
         open_panel(&page).await?;
         assert_eq!(names(&page).await?, ["X axis", "EN", "RX", "packets", "ticks"]);
-        // An empty name takes it back.
+        // An empty name restores the default.
         page.press("[aria-label='Name of ch 0']", &format!("{CONTROL}a{RELEASE}\u{e003}{ENTER}")).await?;
         page.until("[...document.getElementById('edge-row').options].some(({ text }) => text === 'STEP 0')")
             .await?;
@@ -117,7 +117,7 @@ fn the_height_of_rows_is_set_by_a_slider_and_by_keys() -> Result<()> {
         ))
         .await?;
         page.client.active_element().await?.send_keys(&ESCAPE.to_string()).await?;
-        // What is under the pointer is what is drawn there.
+        // The row under the pointer is the one that is drawn there.
         page.js::<()>("document.querySelector('#view-pulses > .scroll').scrollTop = 0;", vec![]).await?;
         point(&page, 0, 64.0).await?;
         until_reads(&page, "EN ").await?;
@@ -136,7 +136,7 @@ fn the_selected_row_is_moved_and_hidden_by_keys_and_announced() -> Result<()> {
         page.until_equal(said, &json!("ch 0 is row 4 of 5.")).await?;
         page.press("#pulses", &format!("{SHIFT}{DOWN}{DOWN}{RELEASE}")).await?;
         page.until_equal(said, &json!("ch 0 is the last row.")).await?;
-        // Another signal is chosen where the chosen one goes; the last one stays.
+        // If the selected row disappears, another one is selected; the last one stays.
         page.press("#pulses", "h").await?;
         until_rows(&page, 4).await?;
         let chosen = "document.getElementById('edge-row').selectedOptions[0].text";
@@ -146,7 +146,7 @@ fn the_selected_row_is_moved_and_hidden_by_keys_and_announced() -> Result<()> {
         page.press("#pulses", "h").await?;
         page.until_equal(said, &json!("At least one signal must be visible.")).await?;
         until_rows(&page, 3).await?;
-        // A hidden signal is shown while it is chosen.
+        // A hidden signal is visible while it is selected.
         page.choose("#edge-row", "0").await?;
         until_rows(&page, 5).await?;
         ensure!(

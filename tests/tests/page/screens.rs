@@ -12,7 +12,7 @@ use crate::{
 const VIEWS: [(&str, &str); 4] =
     [("motion", "chart-position"), ("pulses", "pulses"), ("packets", ""), ("spectrum", "spectrum-chart")];
 
-/// Nothing lies beyond the right edge of the document.
+/// Nothing is beyond the right edge of the document.
 async fn no_sideways_scrolling(page: &Session, what: &str) -> Result<()> {
     let (content, window): (u32, u32) =
         page.eval("[document.documentElement.scrollWidth, document.documentElement.clientWidth]").await?;
@@ -66,7 +66,7 @@ fn narrow_screens_have_tabs_and_no_horizontal_scrolling() -> Result<()> {
             page.fill("bus.slots", "200").await?;
             page.ready().await?;
             no_sideways_scrolling(&page, &format!("an error at {width} px")).await?;
-            // The next width begins with the work of this one.
+            // The next width starts with the work of this one.
             page.fill("bus.slots", "100").await?;
             page.until("!document.querySelector('#status').textContent.startsWith('not run')").await?;
         }
@@ -98,9 +98,9 @@ fn a_packet_can_be_shown_in_the_pulses_on_a_narrow_screen() -> Result<()> {
 struct Contrast {
     /// Relative luminance of the pane, 0 to 1.
     ground: f64,
-    /// Of the text to the pane.
+    /// Contrast of the text with the pane.
     text: f64,
-    /// Of each curve to the pane.
+    /// Contrast of each curve with the pane.
     curves: Vec<(String, f64)>,
 }
 
@@ -130,7 +130,7 @@ async fn contrasts(page: &Session, dark: bool) -> Result<()> {
     }
     page.pulses().await?;
     page.unfold_spectrum().await?;
-    // The curves on the canvases have the theme's own colours.
+    // The curves on the canvases have the colors of the theme.
     for (canvas, ink) in [("chart-position", "--ideal"), ("pulses", "--step"), ("spectrum-chart", "--actual")]
     {
         drawn(page, canvas, ink).await?;

@@ -1,4 +1,4 @@
-//! One browser with the page in it: what a visitor does, and what there is to see.
+//! One browser with the page: the actions of a user, and what is visible.
 
 use std::{env, fs, path::Path, sync::Arc, time::Duration};
 
@@ -10,9 +10,9 @@ use tokio::time::{Instant, sleep};
 
 use crate::bench::Bench;
 
-/// What does not come within this time hangs, on a busy machine, too.
+/// Maximum time to wait, on a busy machine, too.
 const PATIENCE: Duration = Duration::from_secs(300);
-/// Rest between two looks.
+/// Pause between two checks.
 const LOOK_AGAIN: Duration = Duration::from_millis(20);
 
 /// A user's browser.
@@ -23,19 +23,19 @@ pub(crate) struct Session {
     address: String,
 }
 
-/// One field of the form as a user, or a screen reader, meets it.
+/// One field of the form, as a user or a screen reader reads it.
 #[derive(Debug, Deserialize, PartialEq)]
 pub(crate) struct Field {
     pub(crate) value: String,
     /// `aria-invalid`.
     pub(crate) invalid: bool,
-    /// The visible error beside it; empty for none.
+    /// The visible error next to it; empty without one.
     pub(crate) error: String,
-    /// All that `aria-describedby` leads to.
+    /// All texts of `aria-describedby`.
     pub(crate) described: String,
 }
 
-/// What the header says of the run on show.
+/// The header's text on the visible run.
 #[derive(Debug, Deserialize, PartialEq)]
 pub(crate) struct Shown {
     pub(crate) ready: bool,
@@ -49,7 +49,7 @@ impl Session {
         Self { client, bench: Arc::clone(bench), address }
     }
 
-    /// Another user: at the same address in a second browser, which was never there.
+    /// Another user: at the same address in a new second browser.
     pub(crate) async fn stranger(&self) -> Result<Self> {
         self.bench.visitor(Some(self.address.clone())).await
     }
@@ -59,7 +59,7 @@ impl Session {
         Ok(self.client.goto(&format!("{}{path}", self.address())).await?)
     }
 
-    /// Another user where a driver has one browser at a time: this one goes, its console silent.
+    /// Another user, if a driver has one browser at a time: the current user leaves, with an empty console.
     pub(crate) async fn next_visitor(&self) -> Result<Self> {
         let (said, next) = self.bench.next_in_browser().await?;
         ensure!(said.is_empty(), "the console is not silent:\n{}", said.join("\n"));
@@ -71,21 +71,21 @@ impl Session {
         &self.address
     }
 
-    /// Loads the page anew, with a fragment or without one, and does not wait for it.
+    /// Loads the page again, with or without a fragment, without waiting for it.
     pub(crate) async fn load(&self, fragment: &str) -> Result<()> {
-        // Only a fragment that changes loads nothing.
+        // Changing only the fragment loads nothing.
         self.client.goto("about:blank").await?;
         self.client.goto(&format!("{}{fragment}", self.address())).await?;
         self.listen().await
     }
 
-    /// Loads the page anew and waits until it stands.
+    /// Loads the page again and waits until it is ready.
     pub(crate) async fn open(&self, fragment: &str) -> Result<()> {
         self.load(fragment).await?;
         self.ready().await
     }
 
-    /// Goes to a link as one does that is put into the address of the page that is open: nothing loads anew.
+    /// Opens a link by changing the address of the open page, without reloading it.
     pub(crate) async fn follow(&self, fragment: &str) -> Result<()> {
         self.js::<()>("location.hash = arguments[0]; return null;", vec![json!(fragment)]).await
     }
@@ -101,12 +101,12 @@ impl Session {
         self.js(&format!("return {expression};"), Vec::new()).await
     }
 
-    /// Waits until an expression in the page holds.
+    /// Waits until an expression in the page is true.
     pub(crate) async fn until(&self, expression: &str) -> Result<()> {
         self.until_equal(&format!("Boolean({expression})"), &json!(true)).await
     }
 
-    /// Waits until an expression in the page has a value; says what it was last if it never has.
+    /// Waits until an expression in the page has a value; an error states the last one.
     pub(crate) async fn until_equal(&self, expression: &str, wanted: &Value) -> Result<()> {
         let end = Instant::now() + PATIENCE;
         loop {
@@ -122,7 +122,7 @@ impl Session {
         }
     }
 
-    /// Looks again and again until there is something to see.
+    /// Checks repeatedly until there is a value.
     pub(crate) async fn eventually<T>(
         &self,
         what: &str,
@@ -138,7 +138,7 @@ impl Session {
         }
     }
 
-    /// Waits until nothing more is to come.
+    /// Waits until no more results are pending.
     pub(crate) async fn ready(&self) -> Result<()> {
         self.until("document.documentElement.dataset.state === 'ready'").await
     }
@@ -147,13 +147,13 @@ impl Session {
         self.eval(SHOWN).await
     }
 
-    /// Waits until the page stands and shows the result of the scenario with this digest.
+    /// Waits until the page is ready and shows the result of the scenario with this digest.
     pub(crate) async fn until_digest(&self, digest: &str) -> Result<()> {
         let wanted = json!({ "ready": true, "digest": digest, "stale": false });
         self.until_equal(SHOWN, &wanted).await
     }
 
-    /// Visible text of an element, empty where it is hidden.
+    /// Visible text of an element; empty if it is hidden.
     pub(crate) async fn text(&self, css: &str) -> Result<String> {
         Ok(self.find(css).await?.text().await?)
     }
@@ -170,7 +170,7 @@ impl Session {
         self.find(css).await?.click().await.with_context(|| format!("{css} can't be clicked"))
     }
 
-    /// Shows the spectrum's chart where it is a line, because the motion is not periodic.
+    /// Expands the spectrum if it is collapsed, because the motion is not periodic.
     pub(crate) async fn unfold_spectrum(&self) -> Result<()> {
         if !self.visible("#spectrum-chart").await? {
             self.click("#view-spectrum .fold").await?;
@@ -178,7 +178,7 @@ impl Session {
         self.until("document.getElementById('spectrum-reading').checkVisibility()").await
     }
 
-    /// Puts the focus on an element and types.
+    /// Focuses an element and types.
     pub(crate) async fn press(&self, css: &str, keys: &str) -> Result<()> {
         let element = self.find(css).await?;
         self.js::<Value>("arguments[0].focus();", vec![serde_json::to_value(&element)?]).await?;
@@ -190,12 +190,12 @@ impl Session {
         self.unfold(path).await?;
         let field = self.find(&field(path)).await?;
         field.click().await?;
-        // Keys that are held are lifted at the end of a command; lifting them within one is not every driver's art.
+        // Held keys are released at the end of a command; not every driver can release them within one.
         field.send_keys(&format!("{CONTROL}a")).await?;
         Ok(field.send_keys(text).await?)
     }
 
-    /// Chooses an option of the field of a path, as a user's click does.
+    /// Selects an option of the field of a path, like a user's click.
     pub(crate) async fn choose(&self, css: &str, value: &str) -> Result<()> {
         self.find(css).await?.select_by_value(value).await.with_context(|| format!("{css} has no {value}"))
     }
@@ -208,7 +208,7 @@ impl Session {
         self.click(&card).await
     }
 
-    /// Opens the sections around a field and scrolls to it: what an edge of the form cuts through can't be clicked.
+    /// Opens the sections around a field and scrolls to it: a field that the form's edge cuts off can't be clicked.
     async fn unfold(&self, path: &str) -> Result<()> {
         let script = "for (let at = document.querySelector(arguments[0]); at; at = at.parentElement) \
                       if (at instanceof HTMLDetailsElement) at.open = true; \
@@ -230,7 +230,7 @@ impl Session {
         .await
     }
 
-    /// The value beside a name among what follows from the scenario, such as `Peak rate`.
+    /// The derived value with this name, such as `Peak rate`.
     pub(crate) async fn derived(&self, name: &str) -> Result<String> {
         let script = "const term = [...document.querySelectorAll('#derived dt')].find((each) => \
                       each.textContent === arguments[0]); return term ? term.nextElementSibling.textContent : null;";
@@ -242,7 +242,7 @@ impl Session {
         Ok(self.client.perform_actions(actions).await?)
     }
 
-    /// Saves a picture of the page where pictures are wanted.
+    /// Saves a picture of the page if pictures are requested.
     pub(crate) async fn picture(&self, name: &str) -> Result<()> {
         let Some(folder) = env::var_os("STEPSCOPE_SHOTS") else { return Ok(()) };
         fs::create_dir_all(&folder)?;
@@ -250,10 +250,10 @@ impl Session {
         Ok(fs::write(Path::new(&folder).join(format!("{name}.png")), picture)?)
     }
 
-    /// Keeps what a failed test last saw.
+    /// Saves the last picture of a failed test.
     pub(crate) async fn failed(&self) {
         let name = std::thread::current().name().unwrap_or("page").replace("::", "-");
-        // The test has failed already, for a reason that matters more.
+        // The test has already failed, for a more important reason.
         let _ = tokio::time::timeout(PATIENCE, self.picture(&format!("failed-{name}"))).await;
     }
 
@@ -262,19 +262,19 @@ impl Session {
     }
 }
 
-/// The shown time in s, as the fields of the pulses have it.
+/// The visible time in s, from the fields of the pulses.
 pub(crate) const WINDOW_S: &str = "['window-start', 'window-end'].map((id) => {
     const [number, unit] = document.getElementById(id).value.split(/\\s/);
     return Number(number) * { s: 1, ms: 1e-3, 'µs': 1e-6 }[unit];
 })";
 
-/// Keys as WebDriver writes them.
+/// Keys in the notation of WebDriver.
 pub(crate) const CONTROL: char = '\u{e009}';
 /// See [`CONTROL`].
 pub(crate) const SHIFT: char = '\u{e008}';
 /// See [`CONTROL`].
 pub(crate) const ALT: char = '\u{e00a}';
-/// Lifts the keys that are held.
+/// Releases the held keys.
 pub(crate) const RELEASE: char = '\u{e000}';
 /// See [`CONTROL`].
 pub(crate) const ENTER: char = '\u{e007}';

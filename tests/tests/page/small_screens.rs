@@ -1,4 +1,4 @@
-//! Small screens: every view has room for what it is for, and what has nothing to show gives its room away.
+//! Small screens: every view has space for its purpose, and empty views leave their space to others.
 
 use anyhow::{Result, ensure};
 use serde::Deserialize;
@@ -6,16 +6,16 @@ use serde_json::json;
 
 use crate::{bench::in_browser, session::Session};
 
-/// What there is to see, in CSS pixels.
+/// Visible sizes, in CSS pixels.
 #[derive(Debug, Deserialize)]
 struct Seen {
     /// Heights of the visible canvases of position, speed and acceleration.
     charts: Vec<f64>,
-    /// Height of the room for the pulses, and of what is in it.
+    /// Height of the area of the pulses, and of its contents.
     pulses: (f64, f64),
-    /// Height of the room for the rows of packets.
+    /// Height of the area of the packet rows.
     packets: f64,
-    /// Width of the column of bytes, and whether a text in it is cut off.
+    /// Width of the bytes column, and whether a text in it is cut off.
     bytes: (f64, bool),
 }
 
@@ -100,13 +100,13 @@ fn an_empty_view_is_collapsed_until_it_is_expanded() -> Result<()> {
             .await
         };
         let curves = height("motion").await?;
-        // Segments run alone: nothing is on the line, and the page says so.
+        // Only segments: the line is idle, and the view states it.
         open(&page, "sonobe-2011-segments").await?;
         page.until("document.getElementById('view-packets').offsetHeight < 100").await?;
         ensure!(page.text("#packets-empty").await?.starts_with("The controller runs segments"));
         ensure!(!page.visible("#packets-search").await?, "there is nothing to search");
         ensure!(height("motion").await? > curves + 40.0, "the curves have none of the room");
-        // Not periodic: a line, until somebody wants to see it.
+        // Not periodic: one line, until it is expanded.
         ensure!(page.text("#spectrum-note").await?.contains("not periodic"));
         ensure!(height("spectrum").await? < 100.0 && !page.visible("#spectrum-chart").await?);
         for large in [true, false, true] {
@@ -114,11 +114,11 @@ fn an_empty_view_is_collapsed_until_it_is_expanded() -> Result<()> {
             page.until(&format!("document.getElementById('spectrum-chart').checkVisibility() === {large}"))
                 .await?;
         }
-        // What has something to show has its room again.
+        // A view with content has its space again.
         page.preset("song-2021-one-turn").await?;
         page.ready().await?;
         page.until("document.querySelectorAll('#packets tbody tr').length > 3 && document.getElementById('packets').checkVisibility()").await?;
-        // The choice is kept on this device.
+        // The choice is saved on this device.
         page.open("").await?;
         page.until("document.getElementById('spectrum-chart').checkVisibility()").await
     })

@@ -20,7 +20,7 @@ fn preset(id: &str) -> Result<&'static Preset> {
     all.clone().find(|preset| preset.id == id).with_context(|| id.to_owned())
 }
 
-/// A card by the begin of its title.
+/// A card by the start of its title.
 async fn press_card(page: &Session, within: &str, title: &str) -> Result<()> {
     let script = "const card = [...document.querySelectorAll(`${arguments[0]} .card`)]
         .find((each) => each.textContent.startsWith(arguments[1])); card.click(); return true;";
@@ -185,7 +185,7 @@ fn back_returns_to_the_experiment_before_and_forward_to_the_next() -> Result<()>
         page.client.forward().await?;
         page.until_digest(&Known::preset(turn)?.digest).await?;
         ensure!(!page.visible("#link-message").await?, "going back is no link of another");
-        // After a reload the addresses are all that is left.
+        // After a reload only the addresses are left.
         page.client.refresh().await?;
         page.ready().await?;
         page.client.back().await?;

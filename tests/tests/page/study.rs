@@ -1,4 +1,4 @@
-//! The study: its tabs, its ways in and out, and its numbers against the core's.
+//! The study: its tabs, opening and closing it, and its numbers compared with the core.
 
 use anyhow::{Context, Result, anyhow, ensure};
 use serde_json::{Value, json};
@@ -29,7 +29,7 @@ use crate::{bench::in_browser, exports::KEEP, native::Known, session::Session};
 const SINE: &str = r#"{"title":"A sine","analysis":{"order":399},"source":{"motion":{"axes":[{"moves":[
     {"sine_segments":{"amplitude":{"steps":800},"period_s":0.5,"periods":2,"max_deviation":0.0054}}]}]}}}"#;
 const D1: &str = "source.motion.axes[0].moves[0].sine_segments.max_deviation";
-/// F2, as WebDriver types it.
+/// F2, in the notation of WebDriver.
 const F2: char = '\u{e032}';
 const ESCAPE: char = '\u{e00c}';
 const ENTER: char = '\u{e007}';
@@ -38,14 +38,14 @@ const LEFT: char = '\u{e012}';
 const HOME: char = '\u{e011}';
 const END: char = '\u{e010}';
 
-/// Texts of a row's cells, digits without their groups, by the text that its head begins with.
+/// Texts of a row's cells, without digit grouping, by the start of its header.
 async fn cells(page: &Session, table: &str, head: &str) -> Result<Vec<String>> {
     let script = "const row = [...document.querySelectorAll(`table[aria-label='${arguments[0]}'] tbody tr`)].find((row) => row.innerText.replace(/\\s+/g, ' ').trim().startsWith(arguments[1]));
         return row ? [...row.cells].map((cell) => cell.textContent.replace(/\\u202f/g, '').replace(/\\u00a0/g, ' ')) : [];";
     page.js(script, vec![json!(table), json!(head)]).await
 }
 
-/// A number with its unit, in the unit without prefix.
+/// A number with its unit, converted to the unit without a prefix.
 fn value(text: &str) -> Result<f64> {
     let (number, unit) = text.split_once(' ').unwrap_or((text, ""));
     let scale = match unit {
@@ -59,7 +59,7 @@ fn value(text: &str) -> Result<f64> {
     Ok(number.parse::<f64>().with_context(|| text.to_owned())? * scale)
 }
 
-/// Holds a text of four digits against a number.
+/// Compares a text of four digits with a number.
 fn close(text: &str, wanted: f64) -> Result<()> {
     let found = value(text)?;
     ensure!((found - wanted).abs() <= 6e-4 * wanted.abs(), "{text} is not {wanted}");
@@ -81,7 +81,7 @@ async fn fill(page: &Session, label: &str, text: &str) -> Result<()> {
 fn the_study_opens_and_closes_by_button_key_and_link() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of("{}")?;
-        // The study of a sine begins with its own tab; Compare has nothing to say of it.
+        // The study of a sine opens its own tab; Compare has nothing for it.
         page.open(&format!("#{}", Known::of(SINE)?.link)).await?;
         page.click("#study").await?;
         page.until("document.activeElement.id === 'study-tab-sine'").await?;
@@ -144,7 +144,7 @@ fn the_sweep_matches_the_core_and_a_d1_can_be_applied_and_undone() -> Result<()>
         };
         same(&pointed, &rows[1])?;
         same(&cells(&page, "Results by d1", "current").await?, &Row::of(0.0054, 99))?;
-        // All polylines of the range, not those of the sweep alone.
+        // All polylines of the range, not only those of the sweep.
         page.until("document.querySelectorAll('table[aria-label=\"Best d1 of each number of segments\"] tbody tr').length > 1").await?;
         let six =
             best(Distinct::new(0.004, 0.012, 99).filter(|row| row.segments == 6)).context("none of six")?;
@@ -182,7 +182,7 @@ fn the_sweep_matches_the_core_and_a_d1_can_be_applied_and_undone() -> Result<()>
     })
 }
 
-/// The scenario on show, as the core reads it.
+/// The visible scenario, as the core reads it.
 async fn shown(page: &Session) -> Result<Scenario> {
     let link: String = page.eval("location.hash.slice(1).split('&')[0]").await?;
     decode(&link).map_err(|error| anyhow!("{error}"))
@@ -193,12 +193,12 @@ fn the_best_vertices_become_points_with_their_distortion() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of(&SINE.replace("\"steps\":800", "\"steps\":2000"))?;
         page.open(&format!("#{}&v=tstudy.ysine", known.link)).await?;
-        // Those of the scenario's order, not of the one before.
+        // Those of the scenario's order, not of the previous one.
         let best = optimum(6, Freedom::Free, 399).context("none of six")?;
         let start = (100.0 * best.distortion.position).to_string()[..5].to_owned();
         page.until(&format!("document.getElementById('sine-vertices').textContent.includes('{start}')"))
             .await?;
-        // Another order's distortion may begin with the same digits; its vertices lie elsewhere.
+        // Another order's distortion may start with the same digits; its vertices differ.
         let angle = format!("{:.3}\u{b0}", best.vertices[1].angle.to_degrees());
         page.until(&format!(
             "document.querySelector(\"table[aria-label='Best vertices'] tbody tr:nth-child(2) :nth-child(4)\").textContent === '{angle}'"
@@ -244,7 +244,7 @@ fn an_axis_without_a_sine_is_offered_one() -> Result<()> {
         page.click("#study-sine .study-note button").await?;
         page.until("document.querySelector('[data-path=\"source.motion.axes[0].moves[1].sine_segments.max_deviation\"]')?.value === '0.002'").await?;
         page.ready().await?;
-        // The button has gone; what it says has the focus, until an undo makes it untrue.
+        // The button is removed; its message has the focus until an undo makes it wrong.
         ensure!(page.eval::<bool>("document.activeElement.id === 'sine-note'").await?);
         ensure!(page.text("#sine-note").await?.starts_with("Axis 0 now ends with a sine"));
         page.until("document.querySelector(\"[aria-label='Use: 6 segments, best d1']\")").await?;
@@ -278,17 +278,17 @@ fn a_long_sweep_shows_its_progress_and_can_be_canceled() -> Result<()> {
         )
         .await?;
         page.until("document.querySelector('#study-sine .study-job button').offsetWidth > 0").await?;
-        // By its key: the button may move while the numbers beside it grow.
+        // By its key: the button may move while the numbers next to it grow.
         page.press("#study-sine .study-job button", &ENTER.to_string()).await?;
         page.until("document.querySelector('#study-sine .study-job').innerText.startsWith('Canceled: ')")
             .await?;
-        // The sweep before is there still: it can be pointed at, and its best be taken.
+        // The previous sweep is still there: it can be selected, and its best row applied.
         page.press("#sine-charts", &RIGHT.to_string()).await?;
         for head in ["selected", "best by position"] {
             let row = cells(&page, "Results by d1", head).await?;
             ensure!(row.len() == 9 && row[1].starts_with("0.0") && row[8] == "Use", "{row:?}");
         }
-        // Nothing goes on behind it, and what comes next is whole.
+        // Nothing continues in the background, and the next sweep is complete.
         fill(&page, "harmonics to", "9").await?;
         fill(&page, "points", "12").await?;
         page.until("document.getElementById('sine-charts')?.ariaValueMax === '11'").await?;
@@ -296,7 +296,7 @@ fn a_long_sweep_shows_its_progress_and_can_be_canceled() -> Result<()> {
     })
 }
 
-/// A table natively, as the page asks for it.
+/// A table computed natively with the page's options.
 fn native(known: &Known, form: &str, format: EntryFormat, error_us: u64) -> Result<Stored> {
     let config = known.experiment.config();
     let form = match form {
@@ -396,12 +396,12 @@ fn numbers_and_files_of_tables_match_the_core() -> Result<()> {
             same_file(&page, language.name(), &name, &text).await?;
         }
         same_file(&page, "walker", WALKER_FILE, WALKER).await?;
-        // The export panel has the chosen table, too, and says that it is not exact.
+        // The export panel has the selected table, too, and states that it is not exact.
         page.click("#export").await?;
         page.until("document.querySelector('#export-list [data-file]') !== null").await?;
         page.until("document.querySelector('[data-file=\"a-sine-axis-0-document-q8-avr.h\"]')?.innerText.includes('rounded as in the paper')").await?;
 
-        // A motion without a table of its own says why; of a source without axes the steps of its run are kept.
+        // A motion without a paper's table explains this; without axes the steps of the run are stored.
         let cosine = Known::of("{}")?;
         page.open(&format!("#{}&v=tstudy.ytables", cosine.link)).await?;
         page.until(made).await?;
@@ -471,13 +471,13 @@ fn the_comparison_matches_the_core_and_a_shape_can_be_applied() -> Result<()> {
             close(&shown[6], cost.last_step_s)?;
             ensure!((shown[7] == "in use") == (name == "Cosine, exact"), "{shown:?}");
         }
-        // They lie over each other, and each is to be seen.
+        // They overlap, and each is visible.
         let speeds = page.canvas("compare-speeds").await?;
         for ink in ["--actual", "--ideal", "--enable", "--wire"] {
             ensure!(speeds.ink(ink).columns > 100.0, "{ink} has {} columns", speeds.ink(ink).columns);
         }
 
-        // Its acceleration reaches over half of what the greatest one has room for: what has no bound, and no chart, takes none.
+        // The largest finite peak uses at least half of the scale; infinite peaks are excluded.
         let reach = "(() => {
             const canvas = document.querySelector(\"canvas[aria-label='Acceleration, Cosine, exact']\");
             const { data, width, height } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -500,7 +500,7 @@ fn the_comparison_matches_the_core_and_a_shape_can_be_applied() -> Result<()> {
         page.click("#undo").await?;
         page.until_digest(&known.digest).await?;
 
-        // A move of another kind gives its steps and its time; the ramp is given here.
+        // A move of another kind determines steps and time; the ramp is given here.
         let constant = r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":1000},"speed":{"steps_s":2000}}}]}]}}}"#;
         page.open(&format!("#{}&v=tstudy", Known::of(constant)?.link)).await?;
         fill(&page, "Ramp", "50 ms").await?;
@@ -543,12 +543,12 @@ fn a_shape_is_applied_only_to_the_selected_axis() -> Result<()> {
             )
             .await?
         );
-        // The button has gone: its row has the focus.
+        // The button is removed: its row has the focus.
         page.until("document.querySelector('#study-compare tr.chosen')?.innerText.startsWith('Bezier')")
             .await?;
         page.until("document.activeElement.matches('#study-compare tr.chosen')").await?;
 
-        // A form with a problem takes nothing.
+        // A form with a problem accepts nothing.
         page.fill("source.motion.axes[1].moves[0].ramps.duration_s", "0").await?;
         page.until_equal(USABLE, &json!(0)).await?;
         page.fill("source.motion.axes[1].moves[0].ramps.duration_s", "0.4").await?;
@@ -562,7 +562,7 @@ fn a_shape_is_applied_only_to_the_selected_axis() -> Result<()> {
         page.until_equal(ROWS, &json!(0)).await?;
         fill(&page, "Ramp", "100 ms").await?;
         page.until_equal(ROWS, &json!(12)).await?;
-        // Another source leaves no rows of the axis before.
+        // Another source leaves no rows of the previous axis.
         page.choose("[data-path='source#kind']", "packets").await?;
         page.until_equal(ROWS, &json!(0)).await?;
         page.until("document.querySelector('#study-compare .study-field').hidden").await
@@ -579,7 +579,7 @@ fn the_focus_stays_in_the_tab_when_a_button_disappears() -> Result<()> {
         page.press("#study-torque .study-note button", &ENTER.to_string()).await?;
         page.until("document.getElementById('torque-verdict').textContent !== ''").await?;
         ensure!(page.eval::<bool>("document.activeElement.matches('#study-torque .study-note')").await?);
-        // Work that ends under its Cancel button.
+        // Work that ends while its Cancel button has the focus.
         page.click("#study-tab-sine").await?;
         fill(&page, "points", "20000").await?;
         page.until(

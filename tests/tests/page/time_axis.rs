@@ -1,4 +1,4 @@
-//! The time axis that motion, pulses and packets share.
+//! The shared time axis of motion, pulses and packets.
 
 use anyhow::{Context, Result, anyhow, ensure};
 use fantoccini::actions::{
@@ -14,7 +14,7 @@ use crate::{
     session::{END, ENTER, SHIFT, Session},
 };
 
-/// The part of the time axis on show, in s.
+/// The visible part of the time axis, in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Window {
     start: f64,
@@ -49,7 +49,7 @@ fn seconds(text: &str) -> Result<f64> {
     Ok(number.replace('\u{2212}', "-").parse::<f64>().with_context(|| format!("`{text}`"))? * scale)
 }
 
-/// The window holds a packet and its tick, and not much more.
+/// The window has a packet and its tick, and little more.
 fn holds(known: &Known, packet: &LoggedPacket, window: Window) -> Result<()> {
     let start = known.seconds(packet.start.0);
     let end = known.seconds(packet.tick_end.unwrap_or(packet.end).0);
@@ -82,7 +82,7 @@ fn a_selected_packet_is_shown_in_pulses_and_curves() -> Result<()> {
         let start: String = page.eval("document.getElementById('window-start').value").await?;
         ensure!(label.contains(&start), "the pulses say what they show: {label}");
 
-        // By keys alone: the last packet.
+        // By keys only: the last packet.
         page.press("#packets", &format!("{END}{ENTER}")).await?;
         let last = packets.len() - 1;
         page.until(&format!("document.querySelector('#packet-{last}')?.ariaSelected === 'true'")).await?;
@@ -98,7 +98,7 @@ async fn redrawn(page: &Session, id: &str, before: &str) -> Result<()> {
     page.eventually(&format!("{id} drawn anew"), look).await
 }
 
-/// Where an element lies in the window, in CSS pixels.
+/// Position of an element in the window, in CSS pixels.
 #[derive(Deserialize)]
 struct Place {
     x: f64,
@@ -112,7 +112,7 @@ impl Place {
         page.eval(&format!("document.getElementById('{id}').getBoundingClientRect().toJSON()")).await
     }
 
-    /// A point that lies in these parts of the width and height.
+    /// A point at these fractions of the width and height.
     fn point(&self, across: f64, down: f64) -> (i64, i64) {
         ((self.x + self.width * across) as i64, (self.y + self.height * down) as i64)
     }
@@ -161,7 +161,7 @@ fn every_zoom_control_changes_the_range_and_fit_restores_it() -> Result<()> {
     })
 }
 
-/// Waits for another window than this one.
+/// Waits for a window that differs from this one.
 async fn changed(page: &Session, before: Window) -> Result<Window> {
     let look = async || Ok(Some(window(page).await?).filter(|now| *now != before));
     page.eventually(&format!("another time than {before:?}"), look).await
@@ -201,7 +201,7 @@ fn clicks_set_cursors_in_all_views_with_their_difference() -> Result<()> {
 fn the_next_edge_matches_the_trace_and_is_announced() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of("{}")?;
-        // Bit 0 is STEP0, the row that is chosen first.
+        // Bit 0 is STEP0, the row that is selected first.
         let high = |index: usize| known.recording.trace.get(index).map(|record| record.levels.0 & 1);
         let rise = (1..known.recording.trace.len())
             .find(|&index| high(index - 1) == Some(0) && high(index) == Some(1))

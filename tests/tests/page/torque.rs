@@ -1,4 +1,4 @@
-//! The motor of an axis: its fields, the warning beside a move, and the study's tab Torque against the core's numbers.
+//! The motor of an axis: its fields, the warning at a move, and the study's tab Torque compared with the core.
 #![allow(clippy::expect_used, clippy::panic, reason = "a missing file or program fails the test")]
 
 use anyhow::{Result, ensure};
@@ -12,18 +12,18 @@ use stepscope_core::{
 
 use crate::{bench::in_browser, native::Known, session::Session};
 
-/// Two axes, the first with a motor that the load of its move is too much for.
+/// Two axes; the load of the first one's move is too large for its motor.
 const SHORT: &str = r#"{"title":"A heavy load","bus":{"channels":2},"source":{"motion":{"axes":[
     {"moves":[{"cosine":{}},{"dwell":{}}],"motor":{"load_inertia_g_cm2":9955,"load_torque_mn_m":100}},{}]}}}"#;
 const AXIS: &str = "source.motion.axes[0]";
 
-/// Texts of a table's cells, row by row, digits without their groups.
+/// Texts of a table's cells, row by row, without digit grouping.
 async fn cells(page: &Session, table: &str) -> Result<Vec<Vec<String>>> {
     let script = "return [...document.querySelectorAll(`table[aria-label='${arguments[0]}'] tbody tr`)].map((row) => [...row.cells].map((cell) => cell.textContent.replace(/\\u202f/g, '')));";
     page.js(script, vec![json!(table)]).await
 }
 
-/// The notes beside the moves of the first axis.
+/// The notes of the first axis' moves.
 const NOTES: &str =
     "[...document.querySelectorAll(`[data-note^='source.motion.axes[0]']`)].map((note) => note.textContent)";
 
@@ -46,7 +46,7 @@ fn sufficient_torque_removes_the_warning() -> Result<()> {
         page.until(&format!("{NOTES}.every((note) => !note.includes('⚠'))")).await?;
         // A run is the same with and without a motor.
         page.until_digest(&known.digest).await?;
-        // The motor of the document as it is.
+        // The unchanged motor of the paper.
         page.click(&format!("[data-path='{AXIS}.motor#kind']")).await?;
         page.until(&format!("!document.querySelector(`[data-path='{AXIS}.motor.supply_v']`)")).await?;
         page.click(&format!("[data-path='{AXIS}.motor#kind']")).await?;
@@ -81,7 +81,7 @@ fn the_torque_tab_has_the_numbers_and_curves_of_the_core() -> Result<()> {
         ensure!(facts[1][1] == corner, "{facts:?}");
         let outcome: String = page.eval("document.getElementById('torque-verdict').textContent").await?;
         ensure!(outcome.starts_with("⚠ Too little torque in one interval"), "{outcome}");
-        // The other axis has no motor; the button gives it the document's.
+        // The other axis has no motor; the button adds the paper's.
         page.eval::<Value>("(() => { const axes = document.getElementById('study-axis'); axes.value = '1'; axes.dispatchEvent(new Event('change')); return null; })()").await?;
         page.until("document.querySelector('#study-torque button[aria-label^=\"Add the \"]')").await?;
         page.click("#study-torque button[aria-label^='Add the ']").await?;
@@ -99,7 +99,7 @@ fn the_torque_tab_has_the_numbers_and_curves_of_the_core() -> Result<()> {
     })
 }
 
-/// 4000 steps at 50 000 steps/s at once, as a list of segments.
+/// 4000 steps at 50 000 steps/s from the start, as a list of segments.
 const LIST: &str = r#"{"title":"At once","bus":{"channels":2},"source":{"segments":{"channels":[{"segments":[
     {"steps":{"count":4000,"interval_q16":20971520,"dir":1}}]}]}}}"#;
 
@@ -119,7 +119,7 @@ fn steps_without_a_motion_are_checked_against_a_motor() -> Result<()> {
         says("There is no motor: select one").await?;
         page.until("document.querySelectorAll('#study-torque select option').length > 5").await?;
         page.choose("#study-torque select", "song-2021").await?;
-        // A driver's choice is a change, and no input as a user's is.
+        // A driver's selection sends a change event, but no input event like a user's.
         page.until("document.getElementById('torque-verdict').textContent !== ''").await?;
         let machine =
             Machine::of(&Axis { motor: Some(Default::default()), ..Axis::default() }).expect("a motor");
@@ -147,7 +147,7 @@ fn steps_without_a_motion_are_checked_against_a_motor() -> Result<()> {
         // The other channel has no list.
         page.choose("#study-axis", "1").await?;
         says("Channel 1 has no steps, so it needs no torque.").await?;
-        // A plant has a motor of its own, and nothing is left to choose.
+        // A plant has its own motor, and there is nothing to select.
         page.choose("#study-axis", "0").await?;
         page.click("[data-path='plant#kind']").await?;
         says("Channel 0: torque of its motor and torque needed by the steps; there is no plan.").await?;

@@ -1,4 +1,4 @@
-//! What the tests share: the motors of F10 and edges at given cycles.
+//! Shared by the tests: the motors of F10, and edges in given cycles.
 #![allow(dead_code, unreachable_pub, reason = "each test file takes what it needs")]
 
 use stepscope_peripheral::{
@@ -13,7 +13,7 @@ use stepscope_plant::{
 /// T_step of the patent, in cycles: 2.048 ms.
 pub const T_STEP: u64 = 32_768;
 
-/// The default motor without any friction.
+/// The default motor without friction.
 pub fn frictionless() -> MotorModel {
     MotorModel { friction_mn_m: 0.0, viscous_un_m_s: 0.0, ..MotorModel::default() }
 }
@@ -22,7 +22,7 @@ pub fn full_steps() -> MotorModel {
     MotorModel { microsteps: 1, ..MotorModel::default() }
 }
 
-/// F10's patent set: the project's own, as the patent names no motor.
+/// F10's motor for the patent's figures. It is our own, because the patent names no motor.
 pub fn patent_set() -> MotorModel {
     MotorModel {
         microsteps: 1,
@@ -49,7 +49,7 @@ pub fn with_sensor(setup: Setup, bandwidth_hz: f64) -> Setup {
     Setup { current_sensor: SensorChain { bandwidth_hz, ..SensorChain::default() }, ..setup }
 }
 
-/// Records of pulses of `width` cycles that rise to the right in these cycles of each channel.
+/// Records of pulses of `width` cycles to the right, which rise in these cycles of each channel.
 pub fn records(rises: &[Vec<u64>], width: u64) -> Vec<Record> {
     let right: u64 = (0..rises.len()).map(|channel| 1 << (16 + channel)).sum();
     let mut edges: Vec<(u64, u64)> = vec![];
@@ -81,7 +81,7 @@ pub fn run(setup: &Setup, records: &[Record], cycles: u64, observer: &mut impl O
     plant
 }
 
-/// Looks at each point with a closure.
+/// Calls a closure for each point.
 pub struct Each<F>(pub F);
 
 impl<F: FnMut(&Plant)> Observer for Each<F> {

@@ -1,11 +1,11 @@
-//! Entries aimed at cycles in which something happens in the story's run.
+//! Entries in cycles in which something happens in the story's run.
 
 use super::super::parameters::{Case, Controller, Group, Input};
 use super::super::run::Outcome;
 use super::Dice;
 use super::script::Script;
 
-/// States at which aiming is worth most.
+/// The most interesting states.
 const RUNNING: u64 = 3;
 const WAIT: u64 = 5;
 const PAUSING: u64 = 6;
@@ -14,13 +14,13 @@ const RETURNING: u64 = 9;
 const HOMING: u64 = 10;
 
 impl Dice {
-    /// Entries at the cycles of records, a little before or after.
+    /// Entries in the cycles of records, or shortly before or after them.
     pub(super) fn aim(&mut self, scripts: &mut [Script], case: &Case, outcome: &Outcome) {
         for _ in 0..self.between(1, 6) {
             let index = self.below(scripts.len() as u64) as usize;
             let panel = &outcome.controllers[index].panel;
             let record = panel[self.below(panel.len() as u64) as usize];
-            // States that are left in this record's cycle: the cause came one before it.
+            // States that are left in this record's cycle: the cause was one cycle earlier.
             let is_lively =
                 |word: u64| [RUNNING, WAIT, PAUSING, JOG, RETURNING, HOMING].contains(&(word & 15));
             let lively: Vec<(u64, u64)> = panel
@@ -53,7 +53,7 @@ impl Dice {
         }
     }
 
-    /// A stop between a move's begin and its change of DIR; `false`: DIR never changes.
+    /// A stop between the start of a move and its change of DIR; `false`: DIR never changes.
     fn aim_at_dir(&mut self, scripts: &mut [Script], case: &Case, outcome: &Outcome, index: usize) -> bool {
         let dir = |levels: u64| levels >> (16 + index) & 1;
         let changes: Vec<u64> = outcome
@@ -86,7 +86,7 @@ impl Dice {
         true
     }
 
-    /// What matters most in a state, about the cycle in which it ends.
+    /// The most interesting input in a state, near the cycle in which it ends.
     fn strike_state(&mut self, script: &mut Script, of: &Controller, word: u64, at: u64) {
         let group = of.groups.get((word >> 16 & 0x1FF).wrapping_sub(1) as usize);
         let before =
@@ -132,7 +132,7 @@ impl Dice {
         self.press(script, of, button, at.saturating_sub(of.debounce_cycles).max(1))
     }
 
-    /// A sensor whose debounced change is in cycle `at`, if it is the script's.
+    /// A sensor whose debounced change is in cycle `at`, if the script may change it.
     fn sense(&mut self, script: &mut Script, of: &Controller, input: Input, level: bool, at: u64) {
         if script.free.contains(&input) {
             let from = at.saturating_sub(of.sensor_debounce_cycles).max(1);
@@ -141,7 +141,7 @@ impl Dice {
         }
     }
 
-    /// Start, and about one cycle of its move: `until`, pause and start again.
+    /// Start, and near one cycle of its move: `until`, pause and start again.
     pub(super) fn duel(&mut self, script: &mut Script, of: &Controller, t: u64) -> u64 {
         let until = of.groups.iter().find_map(|group| match group {
             Group::Move(order) => order.until,
@@ -163,7 +163,7 @@ impl Dice {
         last + self.between(1, 100 * script.step)
     }
 
-    /// A motion is stopped by E-stop for a cycle or two, cleared, and another begins at once.
+    /// An E-stop stops a motion for a cycle or two, is cleared, and another motion begins immediately.
     pub(super) fn quick(&mut self, script: &mut Script, of: &Controller, t: u64) -> u64 {
         let t = self.jogs(script, of, t);
         let estop = t.saturating_sub(self.between(0, 5 * script.step)).max(1);
@@ -177,7 +177,7 @@ impl Dice {
         self.press_at(script, of, button, soon).max(end)
     }
 
-    /// One entry that should hit in cycle `at`.
+    /// One entry with an effect in cycle `at`.
     fn strike(&mut self, script: &mut Script, of: &Controller, at: u64) {
         let at = at.max(1);
         let pressed = at.saturating_sub(of.debounce_cycles).max(1);

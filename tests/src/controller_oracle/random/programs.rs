@@ -5,7 +5,7 @@ use super::super::parameters::{Case, Controller, Group, Input, Move, Profile, Un
 use super::Dice;
 
 impl Dice {
-    /// A program: any groups, or some that nest, or a long move that much can happen to.
+    /// A program: any groups, nested ones, or a long move with many inputs.
     pub(super) fn program(&mut self, case: &Case, controller: &Controller) -> Vec<Group> {
         let groups = self.pick(&[1, 1, 2, 3, 4, 5, 7, 9]);
         let mut program: Vec<Group> =
@@ -18,7 +18,7 @@ impl Dice {
         program
     }
 
-    /// Repeats within repeats, and a jump out of them.
+    /// Nested repeats, and a jump out of them.
     fn nest(&mut self, case: &Case, controller: &Controller) -> Vec<Group> {
         let out = Group::Jump { to: 6, input: Some(Input::In(0)), level: self.chance(80) };
         let set = Group::Set { output: self.below(4) as u8, level: self.chance(50) };
@@ -32,7 +32,7 @@ impl Dice {
         ]
     }
 
-    /// Up the ramp, with `until`.
+    /// Acceleration with `until`.
     pub(super) fn long_move(&mut self, controller: &Controller) -> Group {
         let (steps, level) = (self.whole(60, 500), self.whole(1, 5));
         let table =
@@ -52,7 +52,7 @@ impl Dice {
         })
     }
 
-    /// A speed and a number of steps close to twice those of its ramp.
+    /// A speed, and a number of steps close to twice those of its ramp.
     fn just_fits(&mut self, controller: &Controller, level: i64) -> (i64, i64) {
         let max = controller.max_speed_hz;
         let table = Table::new(controller.start_speed_hz, level * controller.level_hz_s, max);

@@ -1,4 +1,4 @@
-//! The script of a random controller: a story of presses, sensors, cuts; entries aimed at a cycle.
+//! The script of a random controller: a story of presses, sensors and power cuts; entries for a given cycle.
 
 use std::collections::BTreeMap;
 
@@ -6,14 +6,14 @@ use super::super::numbers::Numbers;
 use super::super::parameters::{Case, Controller, Entry, Input, What};
 use super::{Dice, homes};
 
-/// A script that is being written: one level an input and cycle.
+/// A script in progress: at most one level per input and cycle.
 pub(super) struct Script {
     entries: BTreeMap<(u64, usize), What>,
-    /// It may have power, estop and clear.
+    /// It may change power, estop and clear.
     common: bool,
-    /// Inputs that are not the axis's.
+    /// Inputs that the axis does not drive.
     pub(super) free: Vec<Input>,
-    /// Cycles of a step at the greatest speed.
+    /// Cycles of a step at the maximum speed.
     pub(super) step: u64,
     /// W.
     pub(super) pulse: u64,
@@ -55,7 +55,7 @@ const EDIT_BUTTONS: [Input; 6] =
     [Input::System, Input::Ok, Input::Ok, Input::Clear, Input::Key(0), Input::Key(1)];
 
 impl Dice {
-    /// A press that stands; gives the cycle in which it is released.
+    /// A debounced press; returns the cycle of its release.
     pub(super) fn press(&mut self, script: &mut Script, of: &Controller, button: Input, at: u64) -> u64 {
         let n = of.debounce_cycles;
         let held = match self.below(12) {
@@ -81,7 +81,7 @@ impl Dice {
         }
     }
 
-    /// The whole story.
+    /// The complete story.
     pub(super) fn tell(&mut self, script: &mut Script, of: &Controller) {
         let mut t = of.self_test_cycles + 17 * of.memory.byte_write_cycles + self.between(0, 20);
         if self.chance(20) {
@@ -98,7 +98,7 @@ impl Dice {
             t = self.scene(script, of, t) + self.gap(script, of);
         }
         if self.chance(10) {
-            // Power does not come back.
+            // Power does not return.
             script.level(t, Input::Power, false);
         }
         if self.chance(85) {
@@ -157,7 +157,7 @@ impl Dice {
         }
     }
 
-    /// Away from zero, and back, with a pause.
+    /// Moves away from zero and back, with a pause.
     fn returns(&mut self, script: &mut Script, of: &Controller, t: u64) -> u64 {
         let rest = of.debounce_cycles + self.between(1, 20 * script.step);
         let t = self.jogs(script, of, t) + rest;
@@ -171,7 +171,7 @@ impl Dice {
         if self.chance(60) { self.press(script, of, Input::Start, t) } else { t }
     }
 
-    /// Start, pause, and on again, or given up.
+    /// Start, pause, and continue or abort.
     fn pauses(&mut self, script: &mut Script, of: &Controller, t: u64) -> u64 {
         let soon = self.between(1, 150 * script.step);
         let mut t = self.press(script, of, Input::Start, t) + soon;
@@ -254,7 +254,7 @@ impl Dice {
         t + of.self_test_cycles + 16 * byte
     }
 
-    /// One number gets a value that it may have.
+    /// One number gets an allowed value.
     fn edits_one(&mut self, script: &mut Script, of: &Controller, t: u64) -> u64 {
         let rest = of.debounce_cycles + 1;
         let numbers = Numbers::of_scenario(of);
@@ -278,7 +278,7 @@ impl Dice {
         if self.chance(60) { self.press(script, of, Input::Start, t) } else { t }
     }
 
-    /// Sensors and switches of their own, all along.
+    /// Independent sensors and switches during the whole run.
     fn sensors(&mut self, script: &mut Script, end: u64) {
         for input in script.free.clone() {
             let is_limit = matches!(input, Input::LimitMin | Input::LimitMax);

@@ -18,7 +18,7 @@ impl Dice {
             1 => max,
             _ => self.whole((max / 12).max(10), (max / 3).max(10)),
         };
-        // About so many steps to the greatest speed at level 3.
+        // About this number of steps to the maximum speed at level 3.
         let ramp = self.between(10, 500) as i64;
         let level_hz_s = ((max * max - start * start) / (2 * ramp) / 3).clamp(1, 1_000_000);
         let speed = |dice: &mut Self| dice.whole((max / 6).max(10), max);
@@ -81,7 +81,7 @@ impl Dice {
             0 => 0,
             1 | 2 => self.between(0, 17 * byte),
             3 if self.chance(50) => 17 * byte - 1,
-            // Death in the middle of a byte of the closing record.
+            // The supply fails during a byte of the closing record.
             3 => self.between(0, 16) * byte + byte / 2,
             _ => self.between(17 * byte - 1, 40 * byte),
         };
@@ -89,7 +89,7 @@ impl Dice {
         controller
     }
 
-    /// Quick buttons, and a ramp that moves climb.
+    /// Short debouncing, and a ramp within the reach of moves.
     fn tame(&mut self, controller: &mut Controller) {
         let max = controller.max_speed_hz;
         controller.start_speed_hz = (max / 5).max(10);
@@ -159,7 +159,7 @@ impl Dice {
         }
     }
 
-    /// A journal that has gone round, banks of numbers, damage.
+    /// A journal that has wrapped, banks of numbers, damage.
     pub(super) fn memory_bytes(&mut self, controller: &Controller) -> Vec<u8> {
         let mut bytes = vec![0xFF; size(controller)];
         let slots = controller.memory.slots;
@@ -196,7 +196,7 @@ impl Dice {
         bytes
     }
 
-    /// The scenario's numbers, some of them others, now and then out of range.
+    /// The scenario's numbers, some of them changed, sometimes out of range.
     fn numbers(&mut self, controller: &Controller) -> Vec<i64> {
         let of_scenario = Numbers::of_scenario(controller);
         let mut values = of_scenario.values().to_vec();

@@ -1,11 +1,11 @@
-//! What the random cases reach: every state, alarm, kind of group, trust, way through memory, power and homing.
+//! Coverage of the random cases: every state, alarm, kind of group and trust, and all paths through memory, power and homing.
 
 use std::{collections::BTreeMap, thread};
 
 use super::super::eeprom::{RECORD, size};
 use super::super::*;
 
-/// How often each thing was reached, by cases.
+/// Number of cases that reached each thing.
 #[derive(Default)]
 struct Reach(BTreeMap<String, u64>);
 
@@ -32,7 +32,7 @@ fn kind(group: &Group) -> &'static str {
     }
 }
 
-/// What a controller's panel, memory and axis tell.
+/// Things that panel, memory and axis of a controller show.
 fn controller(reach: &mut Reach, of: &Controller, outcome: &ControllerOutcome) {
     reach.note(format!("policy {:?}", of.memory.policy));
     for record in &outcome.panel {
@@ -97,7 +97,7 @@ fn pulses(reach: &mut Reach, case: &Case, outcome: &Outcome) {
     reach.note_times("pulse", whole);
 }
 
-/// What the cases of these seeds reach, and how many cycles each takes.
+/// Coverage of the cases of these seeds, and the cycles of each.
 fn cases(seeds: impl Iterator<Item = u64>) -> (Reach, Vec<u64>) {
     let mut reach = Reach::default();
     let mut cycles = Vec::new();
@@ -116,7 +116,7 @@ fn cases(seeds: impl Iterator<Item = u64>) -> (Reach, Vec<u64>) {
 
 #[test]
 fn the_cases_reach_every_state_and_alarm() {
-    // The longest test of its kind by far: on two cores it is done with the others.
+    // The longest test of its kind: on two cores it ends with the others.
     let (reach, mut cycles) = thread::scope(|scope| {
         let odd = scope.spawn(|| cases((1..3000).step_by(2)));
         let (mut reach, mut cycles) = cases((0..3000).step_by(2));
@@ -147,10 +147,10 @@ fn the_cases_reach_every_state_and_alarm() {
             "axis error",
             "cut pulse",
             "second loop",
-            // A restart from OFF, and one while power was held up.
+            // A restart from OFF, and one during the hold-up time.
             "0 to 1",
             "14 to 1",
-            // PAUSING, and start before it has stopped.
+            // PAUSING, and start before the stop.
             "6 to 3",
             "6 to 9",
             "7 to 3",

@@ -1,4 +1,4 @@
-//! The oracle against itself: every cycle and cycles passed over give the same; a seed gives one case.
+//! Runs with and without skipped cycles are equal; a seed always gives the same case.
 
 use super::super::*;
 

@@ -1,11 +1,11 @@
-//! Numbers of the text, each through a whole run where it says something about one.
+//! Numbers of the text, checked by complete runs where they describe one.
 
 use super::super::arithmetic::{Table, display_of_position, interval, steps_of_length};
 use super::super::crc32c::crc32c;
 use super::super::*;
 use crate::xxh64::xxh64;
 
-/// A bus of one controller with the document's clock.
+/// A bus of one controller with the paper's clock.
 fn alone(controller: Controller) -> Case {
     Case {
         clock_hz: 16_000_000,
@@ -22,7 +22,7 @@ fn held(input: Input, from: u64, to: u64) -> [Entry; 2] {
     [(from, true), (to, false)].map(|(cycle, level)| Entry { cycle, what: What::Level(input, level) })
 }
 
-/// Presses of so many cycles.
+/// Presses of this number of cycles.
 fn presses(of: &[(u64, Input)], cycles: u64) -> Vec<Entry> {
     of.iter().flat_map(|(at, input)| held(*input, *at, at + cycles)).collect()
 }
@@ -75,7 +75,7 @@ fn a_fine_jog_of_half_a_second_at_10_hz_is_five_steps() {
     inputs.extend(held(Input::JogPlus, 8_000_000, 16_000_000));
     let outcome = run(&alone(Controller { inputs, ..Controller::default() }));
     let begin = 8_000_000 + 160_000;
-    // The first comes after Lm, the others at 10 Hz.
+    // The first step follows after Lm, the others at 10 Hz.
     let first = begin + 1 + 80;
     let expected: Vec<u64> = (0..5).map(|step| first + 1_600_000 * step).collect();
     assert_eq!(rises(&outcome), expected);
@@ -97,7 +97,7 @@ fn a_move_begins_in_the_cycle_after_its_cause() {
     };
     let outcome = run(&alone(controller));
     assert_eq!(rises(&outcome), [1, 2, 3].map(|step| 5001 + 32_000 * step));
-    // DIR changes with the begin; the last pulse's fall is the end, which the panel shows one cycle later.
+    // DIR changes at the start; the move ends at the last fall, which the panel shows one cycle later.
     assert_eq!(outcome.trace[1], (5001, 7 << 32 | 1 << 16));
     let ready = outcome.controllers[0].panel.last().copied().unwrap();
     let end = 5001 + 3 * 32_000 + 40;
@@ -120,7 +120,7 @@ fn a_controller_without_inputs_ends_when_its_record_is_written() {
 #[test]
 fn a_hold_up_time_of_17_bytes_minus_one_cycle_is_sufficient() {
     let w = 10;
-    // The cut comes in each cycle of the bytes of a save of numbers.
+    // The cut is in each cycle of the bytes while numbers are saved.
     let lost = |hold_up_cycles: u64| {
         (0..200)
             .filter(|phase| {
@@ -152,7 +152,7 @@ fn a_hold_up_time_of_17_bytes_minus_one_cycle_is_sufficient() {
     };
     assert_eq!(lost(17 * w - 1), 0);
     assert_ne!(lost(17 * w - 2), 0);
-    // 8.5 ms a byte: 136 ms, for sure 144.5 ms.
+    // 8.5 ms per byte: 136 ms, at most 144.5 ms.
     assert_eq!((16 * 85, 17 * 85), (1360, 1445));
 }
 

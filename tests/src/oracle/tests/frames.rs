@@ -1,4 +1,4 @@
-//! A6 on the wire: the check, COBS, which runs of bytes are frames, and what is wrong with the others.
+//! A6 on the wire: CRC, COBS, valid frames, and the faults of invalid ones.
 
 use super::super::frames::{Frame, Frames};
 use super::*;
@@ -7,7 +7,7 @@ fn framed() -> Config {
     Config { framed: true, address: Some(5), ..base() }
 }
 
-/// The fault flags that bytes back to back from cycle 1 leave.
+/// The fault flags after bytes without pauses from cycle 1 on.
 fn faults(bytes: &[u8]) -> u16 {
     let cycles = byte_start(&framed(), 1, bytes.len() as u64) + 1;
     run(&framed(), &sent(&[(1, bytes)], cycles)).faults
@@ -41,7 +41,7 @@ fn cobs_matches_the_examples_of_its_paper() {
         (vec![0x11, 0x22, 0, 0x33], vec![3, 0x11, 0x22, 2, 0x33]),
         (vec![0x11, 0x22, 0x33, 0x44], vec![5, 0x11, 0x22, 0x33, 0x44]),
         (vec![0x11, 0, 0, 0], vec![2, 0x11, 1, 1, 1]),
-        // 254 bytes that are not zero fill a block, which owes no zero.
+        // 254 bytes that are not zero fill a block, without an implied zero.
         (to(1, 254), [vec![255], to(1, 254)].concat()),
         ([vec![0], to(1, 254)].concat(), [vec![1, 255], to(1, 254)].concat()),
         (to(1, 255), [vec![255], to(1, 254), vec![2, 255]].concat()),
@@ -55,7 +55,7 @@ fn cobs_matches_the_examples_of_its_paper() {
 
 #[test]
 fn a_frame_is_cobs_of_its_fields_and_crc_and_a_zero() {
-    // The checks were worked out apart, bit by bit from the other end.
+    // The CRCs were computed separately, bit by bit from the other end.
     assert_eq!(frame(5, 4, &[]), [7, 5, 4, 0x66, 0x19, 0xD3, 0x6B, 0]);
     assert_eq!(frame(0, 4, &[]), [1, 6, 4, 0xCD, 0xE0, 0xFB, 0x36, 0]);
     assert_eq!(frame(5, 1, &[0, 1, 0x81]), [3, 5, 1, 7, 1, 0x81, 0x9D, 0x2D, 0x5C, 0x23, 0]);
@@ -67,7 +67,7 @@ fn encoding_and_decoding_frames_are_inverses() {
         for body in [vec![0; length], vec![7; length], (0..length).map(|i| (i % 251) as u8).collect()] {
             let mut frames = Frames::default();
             let mut heard = Vec::new();
-            // Twice over, after a zero that is nothing.
+            // Twice, after an empty run.
             for byte in [vec![0], frame(9, 0xA5, &body), vec![0], frame(9, 0xA5, &body)].concat() {
                 heard.extend(frames.hear(byte).transpose());
             }
@@ -92,7 +92,7 @@ fn invalid_frames_set_their_documented_fault() {
         // "an empty run (0x00 after 0x00) is nothing", also the first.
         (0, vec![0]),
         (0, [vec![0, 0], frame(255, 4, &[]), vec![0, 0], frame(255, 4, &[]), vec![0]].concat()),
-        // Fewer than 6 decoded bytes: 0, 1, 5; and 6 with a wrong check.
+        // Fewer than 6 decoded bytes: 0, 1, 5; and 6 with a wrong CRC.
         (SHORT_PACKET, vec![1, 0]),
         (SHORT_PACKET, vec![2, 9, 0]),
         (SHORT_PACKET, vec![6, 1, 2, 3, 4, 5, 0]),
@@ -106,10 +106,10 @@ fn invalid_frames_set_their_documented_fault() {
         // The code 0xFF ends a run with its last byte, and one that has a code 0x01 more.
         (CRC, [vec![0xFF], vec![9; 254], vec![0]].concat()),
         (CRC, [vec![0xFF], vec![9; 254], vec![1, 0]].concat()),
-        // Nothing is judged before the 0x00.
+        // Nothing is checked before the 0x00.
         (0, status[..7].to_vec()),
         (0, vec![8; 60]),
-        // A flipped bit in the address, the kind, the check; in the code byte (7 becomes 0x27).
+        // A flipped bit in the address, the kind, the CRC; in the code byte (7 becomes 0x27).
         (CRC, flipped(1)),
         (CRC, flipped(2)),
         (CRC, flipped(6)),
@@ -117,7 +117,7 @@ fn invalid_frames_set_their_documented_fault() {
         // A lost and a duplicated byte.
         (SHORT_PACKET, [&status[..3], &status[4..]].concat()),
         (SHORT_PACKET, [&status[..3], &status[2..]].concat()),
-        // The check is judged before the address.
+        // The CRC is checked before the address.
         (CRC, [vec![7, 6], status[2..].to_vec()].concat()),
         (0, frame(6, 4, &[])),
     ];
@@ -141,23 +141,23 @@ fn the_601st_decoded_byte_is_overlong_in_its_cycle() {
         ([zeros(601), vec![0]].concat(), None),
         // The 602nd, delivered at 1 + 601*160 + 152.
         ([zeros(602), vec![0]].concat(), Some(96_313)),
-        // 600 bytes and an owed zero, when the next code comes: the 604th byte again.
+        // 600 bytes and an implied zero, when the next code arrives: the 604th byte again.
         ([blocks(92).concat(), vec![2, 9, 0]].concat(), Some(96_633)),
-        // Whatever follows up to the next 0x00 has "no further flag": here it is not COBS either.
+        // Bytes up to the next 0x00 set "no further flag": here they are not COBS, either.
         ([zeros(602), vec![200, 1, 0]].concat(), Some(96_313)),
     ];
     for (bytes, overlong) in rows {
         let after = [bytes.clone(), frame(255, 6, &[]), vec![7, 1, 0]].concat();
         let flags = |cycles: u64| run(&framed(), &sent(&[(1, bytes)], cycles)).faults;
         match overlong {
-            // A check that fails, judged at the 0x00.
+            // A wrong CRC, detected at the 0x00.
             None => assert_eq!(faults(bytes), CRC),
             Some(cycle) => {
                 assert_eq!((flags(*cycle), flags(cycle + 1)), (0, OVERLONG), "{} bytes", bytes.len());
                 assert_eq!(faults(bytes), OVERLONG);
             }
         }
-        // The next frame is heard (RESYNC clears the flags), and the next fault is flagged.
+        // The next frame is received (RESYNC clears the flags), and the next fault is flagged.
         assert_eq!(faults(&after), SHORT_PACKET, "{} bytes", bytes.len());
     }
 }
@@ -170,29 +170,29 @@ fn a_byte_with_a_framing_error_is_missing_from_its_frame() {
         let input = Input { forced: vec![(1 + 160 * j + 152, 1, false)], ..sent(&[(1, bytes)], cycles) };
         run(&framed(), &input).faults
     };
-    // FRAMING in its own cycle, and SHORT_PACKET where the 0x00 ends a run that is not COBS any more.
+    // FRAMING in its own cycle, and SHORT_PACKET where the 0x00 ends a run that is no longer COBS.
     assert_eq!(broken(&status, 3, 633), 0);
     assert_eq!(broken(&status, 3, 634), FRAMING);
     assert_eq!(broken(&status, 3, 1_273), FRAMING);
     assert_eq!(broken(&status, 3, 1_274), FRAMING | SHORT_PACKET);
-    // In place of the code byte the next one is the code: 5, then 4 bytes, then 0xD3 of which too few come.
+    // The byte after the missing code byte becomes the code: 5, then 4 bytes, then 0xD3 with too few bytes.
     assert_eq!(broken(&status, 0, 3_000), FRAMING | SHORT_PACKET);
-    // A missing byte that leaves COBS as it was: the last of `3 5 1 7 1 …` is duplicated here, one of them is missing.
+    // A missing byte that leaves the COBS valid: the last of `3 5 1 7 1 …` is duplicated here, one of them is missing.
     let duplicated = [&status[..7], &[0x6B, 0]].concat();
     assert_eq!(broken(&duplicated, 9, 3_000), SHORT_PACKET);
     assert_eq!(broken(&duplicated, 7, 3_000), FRAMING);
-    // Zeros that are missing change nothing else in the blocks: a check fails.
+    // Missing zeros change nothing else in the blocks: the CRC is wrong.
     let zeros = frame(5, 4, &[0, 0, 0]);
     assert_eq!(zeros[..6], [3, 5, 4, 1, 1, 5]);
     assert_eq!(broken(&zeros, 3, 3_000), FRAMING | CRC);
     // A missing 0x00 joins two frames.
     let two = [status.clone(), status.clone()].concat();
     assert_eq!(broken(&two, 7, 3_000), FRAMING | CRC);
-    // Before a frame's first byte it harms nobody, and a run of nothing but missing bytes is empty.
+    // Before a frame's first byte it has no effect, and a run of missing bytes only is empty.
     let after_noise = [vec![0x55], status].concat();
     assert_eq!(broken(&after_noise, 0, 3_000), FRAMING);
     assert_eq!(broken(&[0x55, 0], 0, 3_000), FRAMING);
-    // Also while OVERLONG drops what is heard.
+    // Also while OVERLONG drops bytes.
     let overlong = [vec![1; 610], vec![0]].concat();
     assert_eq!(broken(&overlong, 605, 98_000), FRAMING | OVERLONG);
 }

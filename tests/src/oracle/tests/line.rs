@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// 1000/90 = 11.1 cycles a bit: B = floor(2090/180) = 11, samples at t + 5 + 11*i, the stop bit at t + 104.
+/// 1000/90 = 11.1 cycles per bit: B = floor(2090/180) = 11, samples at t + 5 + 11*i, the stop bit at t + 104.
 fn uneven() -> Config {
     Config { clock_hz: 1_000, baud: 90, receiver_baud: 90, ..base() }
 }
@@ -40,7 +40,7 @@ fn a_sender_holds_bit_k_from_floor_k_clock_over_baud() {
 
 #[test]
 fn byte_j_of_a_send_starts_at_floor_10_j_clock_over_baud() {
-    // floor(10_000*j/90): 111 cycles from byte to byte, and 112 to the tenth: "the floors can leave one
+    // floor(10_000*j/90): 111 cycles per byte, and 112 to the tenth: "the floors can leave one
     // cycle".
     let input = sent(&[(1, &[0xFF; 10])], 1_200);
     let falls: Vec<u64> = edges(&run(&uneven(), &input), bits::RX)
@@ -49,7 +49,7 @@ fn byte_j_of_a_send_starts_at_floor_10_j_clock_over_baud() {
         .map(|(cycle, _)| cycle)
         .collect();
     assert_eq!(falls, [1, 112, 223, 334, 445, 556, 667, 778, 889, 1_001]);
-    // The ninth byte's stop bit ends at 889 + 111 = 1000, and the line is high in the cycle that is left.
+    // The ninth byte's stop bit ends at 889 + 111 = 1000, and the line is high in the remaining cycle.
     let input = Input { forced: vec![(989, 11, false)], ..input };
     let rx = edges(&run(&uneven(), &input), bits::RX);
     assert_eq!(rx[rx.len() - 4..], [(989, false), (1_000, true), (1_001, false), (1_012, true)]);
@@ -73,7 +73,7 @@ fn a_byte_is_delivered_at_its_stop_sample() {
     // A run ends with cycle N-1.
     assert_eq!(heard(&uneven(), &sent(&[(10, &[0xA7])], 115)).len(), 1);
     assert_eq!(heard(&uneven(), &sent(&[(10, &[0xA7])], 114)).len(), 0);
-    // Back to back, through the cycle that the floors leave.
+    // Without pauses, through the cycle that the floors leave.
     let expected: Vec<_> = [1, 112, 223, 334, 445, 556, 667, 778, 889, 1_001]
         .into_iter()
         .zip(1..)
@@ -109,7 +109,7 @@ fn the_stop_bit_is_sampled_in_one_cycle_only() {
 
 #[test]
 fn the_start_bit_is_sampled_again_in_its_middle() {
-    // "It looks again at t + floor(B/2): if the line is high it was a glitch": t = 10, looked at again in
+    // "It looks again at t + floor(B/2): if the line is high it was a glitch": t = 10, sampled again in
     // cycle 15.
     for (glitch, expected) in [(14, 1), (15, 0), (16, 1)] {
         let input = Input { forced: vec![(glitch, 1, true)], ..sent(&[(10, &[0xFF])], 400) };
@@ -119,13 +119,13 @@ fn the_start_bit_is_sampled_again_in_its_middle() {
 
 #[test]
 fn after_a_glitch_the_receiver_arms_in_the_next_cycle() {
-    // B = 16: low at 10, looked at again at 18. A start bit from 19 on is a new t; one that covers 18
+    // B = 16: low at 10, sampled again at 18. A start bit from 19 on is a new t; one that covers 18
     // belongs to t = 10.
     for (start, t) in [(14, 10), (18, 10), (19, 19), (20, 20)] {
         let input = Input { forced: vec![(10, 1, false)], ..sent(&[(start, &[0x5A])], 400) };
         assert_eq!(heard(&base(), &input), [(t + 152, RxEvent::Byte(0x5A))], "a byte sent at {start}");
     }
-    // Low before the look and still low at 19, but high at 18.
+    // Low before the sample and still low at 19, but high at 18.
     let input = forced(&[(10, 200, false), (18, 1, true)], 400);
     assert_eq!(heard(&base(), &input), [(19 + 152, RxEvent::FramingError)]);
 }
@@ -159,13 +159,13 @@ fn after_a_framing_error_the_receiver_arms_one_cycle_after_the_line_is_high() {
         (&[(1, 300, false), (303, 100, false)], &[153, 303 + 152]),
         // High in the cycle after the sample, low again in the next: armed in time.
         (&[(1, 153, false), (155, 100, false)], &[153, 155 + 152]),
-        // Low for ever: one error.
+        // Low without end: one error.
         (&[(1, 1_000, false)], &[153]),
         // High before the sample does not count.
         (&[(1, 1_000, false), (140, 5, true)], &[153]),
     ];
     for (entries, expected) in rows {
-        // The second low of 100 cycles has its stop sample at +152, long after it ended: a byte.
+        // The second low of 100 cycles has its stop sample at +152, long after its end: a byte.
         let cycles: Vec<u64> =
             heard(&base(), &forced(entries, 1_000)).iter().map(|(cycle, _)| *cycle).collect();
         assert_eq!(&cycles, expected, "{entries:?}");
@@ -182,7 +182,7 @@ fn a_slow_receiver_reads_the_stop_bit_as_a_data_bit() {
     assert_eq!(heard(&slow, &sent(&[(1, &[0b0000_0000])], 400)), [(172, RxEvent::Byte(0b1000_0000))]);
     assert_eq!(heard(&slow, &sent(&[(1, &[0b0000_1000])], 400)), [(172, RxEvent::Byte(0b1000_0000))]);
     assert_eq!(heard(&slow, &sent(&[(1, &[0b1000_0001])], 400)), [(172, RxEvent::Byte(0b1100_0001))]);
-    // Sent back to back, its stop sample falls into the next byte's start bit (160..=175 after the first's
+    // Sent without a pause, its stop sample is in the next byte's start bit (160..=175 after the first one's
     // start).
     assert_eq!(heard(&slow, &sent(&[(1, &[0, 0xFF])], 400)), [(172, RxEvent::FramingError)]);
 }

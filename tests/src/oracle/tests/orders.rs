@@ -1,4 +1,4 @@
-//! A6: which orders are taken, the order in which they are judged, and what is answered.
+//! A6: accepted and refused frames, the precedence of refusals, and replies.
 
 use super::*;
 use State::{Busy, Moving, Ready, Stopped};
@@ -8,12 +8,12 @@ fn framed() -> Config {
     Config { framed: true, address: Some(5), queue_depth: 40, ..base() }
 }
 
-/// Slots that last long: a tick is 4*50000 cycles, and no conversation below outlasts it.
+/// Long slots: a tick is 4*50000 cycles, longer than any conversation below.
 fn slow() -> Config {
     Config { step_period: 50_000, queue_depth: 3, ..framed() }
 }
 
-/// One frame after the other, far enough apart for every reply (DE falls at p + 3056 at the latest, after POSITIONS at
+/// Frames far enough apart for every reply (DE falls at p + 3056 at the latest, after POSITIONS at
 /// p + 13136: 81 bytes).
 fn conversation(frames: &[Vec<u8>]) -> Input {
     let mut sends = Vec::new();
@@ -49,7 +49,7 @@ fn nak(reason: u8, status: &[u8]) -> Option<Vec<u8>> {
 /// A frame and its reply, if there is one.
 type Turn = (Vec<u8>, Option<Vec<u8>>);
 
-/// The controller answers the frames one after the other as given.
+/// Compares the replies to the frames with the given ones.
 fn check(config: &Config, turns: &[Turn]) {
     let frames: Vec<Vec<u8>> = turns.iter().map(|(frame, _)| frame.clone()).collect();
     let input = conversation(&frames);
@@ -65,7 +65,7 @@ fn check(config: &Config, turns: &[Turn]) {
 #[test]
 fn a_reply_is_address_kind_status_and_check() {
     // `05 84 01 02 0000000 7A418B54`, `05 FF 01 01 02 00 40 00000 3946DF48`, `05 87 01 02 0000000 00000000 88C001CE`;
-    // the checks were worked out apart.
+    // the CRCs were computed separately.
     let config = Config { queue_depth: 2, ..framed() };
     let rows: &[(Vec<u8>, &[u8])] = &[
         (order(STATUS), &[5, 5, 0x84, 1, 2, 1, 1, 1, 1, 1, 1, 5, 0x7A, 0x41, 0x8B, 0x54, 0]),
@@ -135,7 +135,7 @@ fn an_invalid_body_is_refused_first_and_sets_no_fault() {
             bad(&[0, 1, 0, 0]),
             bad(&[0, 2, 0]),
             bad(&[&[0, 33], &[0; 33][..]].concat()),
-            // Before the seq, and before too many steps.
+            // Takes precedence over the seq, and over too many steps.
             bad(&[9, 1]),
             bad(&[0, 1, 0x7F, 0x7F]),
         ],
@@ -172,11 +172,11 @@ fn a_repeat_is_acknowledged_and_not_queued_again() {
     check(
         &slow(),
         &[
-            // At p the tick is in the queue still.
+            // At p the tick is still queued.
             (ticks(0, &[1]), ack(TICKS, &status(Moving, 2, 1, 0, 0))),
             (ticks(0, &[1]), ack(TICKS, &moving)),
             (ticks(0, &[1]), ack(TICKS, &moving)),
-            // Only the seq tells a repeat: not what it orders, nor whether there is room.
+            // Only the seq identifies a repeat, not its contents or the free places.
             (ticks(0, &[0x7F; 9]), ack(TICKS, &moving)),
             (frame(5, TICKS, &[0, 1]), nak(6, &moving)),
             (order(STOP), ack(STOP, &status(Stopped, 3, 1, 0, 0))),
@@ -191,7 +191,7 @@ fn a_seq_that_is_neither_expected_nor_repeated_is_bad() {
     check(
         &framed(),
         &[
-            // One before the expected, but nothing was accepted yet.
+            // The seq before the expected one, but nothing was accepted yet.
             (ticks(255, &[0]), nak(1, &bad)),
             (ticks(1, &[0]), nak(1, &bad)),
             (ticks(0, &[0]), ack(TICKS, &status(Moving, 39, 1, BAD_SEQ, 0))),
@@ -204,7 +204,7 @@ fn a_seq_that_is_neither_expected_nor_repeated_is_bad() {
             (ticks(0, &[0]), ack(TICKS, &status(Ready, 40, 1, BAD_SEQ, 2))),
         ],
     );
-    // Before too many steps and a full queue; STOPPED and BUSY come after it, too.
+    // Takes precedence over too many steps and a full queue; STOPPED and BUSY have lower precedence.
     check(
         &Config { boot: 1_000_000, ..slow() },
         &[
@@ -247,7 +247,7 @@ fn refusals_have_their_order_of_precedence() {
         &[
             (ticks(0, &[5; 9]), nak(3, &status(Ready, 3, 0, TOO_MANY_STEPS, 0))),
             (ticks(0, &[4; 9]), nak(2, &status(Ready, 3, 0, TOO_MANY_STEPS | QUEUE_OVERFLOW, 0))),
-            // One order too great drops all of them.
+            // One command that is too large drops all of them.
             (ticks(0, &[1, 0x85]), nak(3, &status(Ready, 3, 0, TOO_MANY_STEPS | QUEUE_OVERFLOW, 0))),
         ],
     );
@@ -285,7 +285,7 @@ fn all_kinds_but_ticks_work_during_boot() {
 
 #[test]
 fn positions_are_little_endian_per_channel_after_the_status() {
-    // 300 ticks of four steps to the left on channel 1, then one with three to the right on channel 0 and one on channel 2.
+    // 300 ticks of four steps left on channel 1, then one with three steps right on channel 0 and one on channel 2.
     let config = Config { channels: 3, ..framed() };
     let ticks = |seq: u8, count: u8, orders: [u8; 3]| {
         (frame(255, TICKS, &[&[seq, count], &orders.repeat(count.into())[..]].concat()), None)
@@ -317,7 +317,7 @@ fn unexpected_bodies_and_unknown_kinds_are_refused() {
     for kind in [0x00, 0x08, 0x09, 0x81, 0x87, 0x84, 0xFF] {
         check(&slow(), &[(order(kind), nak(7, &idle)), (frame(5, kind, &[1, 2]), nak(7, &idle))]);
     }
-    // Before BUSY.
+    // Takes precedence over BUSY.
     let moving = status(Moving, 3, 1, 0, 0);
     check(
         &slow(),
@@ -331,14 +331,14 @@ fn unexpected_bodies_and_unknown_kinds_are_refused() {
 
 #[test]
 fn stop_keeps_seq_faults_and_ticks_done() {
-    // The first tick, 4*1000 cycles, ends before the next frame comes: UNDERRUN.
+    // The first tick, 4*1000 cycles, ends before the next frame arrives: UNDERRUN.
     let config = Config { step_period: 1_000, ..framed() };
     check(
         &config,
         &[
             (ticks(0, &[1]), ack(TICKS, &status(Moving, 39, 1, 0, 0))),
             (ticks(1, &[1, 1, 1]), ack(TICKS, &status(Moving, 37, 2, UNDERRUN, 1))),
-            // Two of them ended; the third has begun 4000 cycles after the second, and 3 frames later.
+            // Two of them have ended; the third began 4000 cycles after the second, and 3 frames later.
             (order(STOP), ack(STOP, &status(Stopped, 40, 2, UNDERRUN, 2))),
             (order(ENABLE), ack(ENABLE, &status(Ready, 40, 2, UNDERRUN, 2))),
             (order(RESYNC), ack(RESYNC, &status(Ready, 40, 0, 0, 2))),

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A run's outcome as a packet test sees it: STEP rises of channel 0 and the fault flags.
+/// Results for a packet test: STEP rises of channel 0 and the fault flags.
 fn outcome(config: &Config, input: &Input) -> (Vec<u64>, u16) {
     let run = run(config, input);
     (steps(&run, 0), run.faults)
@@ -44,7 +44,7 @@ fn packets_for_another_address_are_consumed_by_length_and_255_is_for_all() {
     let rows: &[(&[u8], &[u64])] = &[
         (&[6, STEP_RIGHT], &[]),
         (&[6, STEP_RIGHT, 5, STEP_RIGHT], &[635]),
-        // A foreign packet's body is not an address.
+        // The body of a packet for another controller is not an address.
         (&[6, 5, 5, STEP_RIGHT], &[635]),
         (&[6, 5, STEP_RIGHT, STEP_RIGHT], &[]),
         (&[255, STEP_RIGHT], &[315]),
@@ -53,7 +53,7 @@ fn packets_for_another_address_are_consumed_by_length_and_255_is_for_all() {
     for (bytes, expected) in rows {
         assert_eq!(outcome(&addressed(), &sent(&[(1, bytes)], 1_000)), (expected.to_vec(), 0), "{bytes:?}");
     }
-    // Without addresses, 255 is an order like any other: 127 steps.
+    // Without addresses, 255 is a normal command: 127 steps.
     assert_eq!(outcome(&base(), &sent(&[(1, &[255])], 1_000)), (vec![], TOO_MANY_STEPS));
 }
 
@@ -65,7 +65,7 @@ fn a_byte_after_more_than_45_bits_begins_another_packet() {
     let input = |second| sent(&[(1, &[STEP_RIGHT]), (second, &[0x82])], 2_000);
     assert_eq!(outcome(&two, &input(721)), (vec![875], 0));
     // "before a byte delivered in that very cycle is looked at, a partial packet is dropped": 0x82 begins a
-    // new packet, which in its turn is short.
+    // new packet, which is also too short.
     assert_eq!(outcome(&two, &input(722)), (vec![], SHORT_PACKET));
     let then_another = sent(&[(1, &[STEP_RIGHT]), (722, &[0x82, 0])], 2_000);
     // 0x82 delivered at 874, its partner at 1034.
@@ -74,7 +74,7 @@ fn a_byte_after_more_than_45_bits_begins_another_packet() {
 
 #[test]
 fn a_gap_is_detected_45_bits_and_one_cycle_after_a_byte() {
-    // d = 153: SHORT_PACKET in cycle 153 + 720 + 1 = 874, so a run of 875 cycles has it and one of 874 has
+    // d = 153: SHORT_PACKET in cycle 153 + 720 + 1 = 874, so a run of 875 cycles has it and one of 874 does
     // not.
     let two = Config { channels: 2, ..base() };
     assert_eq!(outcome(&two, &sent(&[(1, &[STEP_RIGHT])], 874)).1, 0);
@@ -93,7 +93,7 @@ fn a_gap_without_a_partial_packet_is_no_fault() {
 fn a_short_packet_is_a_fault_for_any_address() {
     for address in [5, 6, 255] {
         let input = sent(&[(1, &[address]), (722, &[5, STEP_RIGHT])], 2_000);
-        // 5 is delivered at 874, the order at 1034.
+        // 5 is delivered at 874, the command at 1034.
         assert_eq!(outcome(&addressed(), &input), (vec![1_036], SHORT_PACKET), "address {address}");
     }
 }
@@ -120,18 +120,18 @@ fn after_a_framing_error_bytes_are_ignored_until_a_gap() {
     };
     // "ignores bytes until a gap has passed" and "bytes that are being ignored count too": the byte
     // delivered at 482 + 152 = 634 is ignored and begins the gap anew, which ends at 634 + 721 = 1355: a
-    // byte sent at 1203 is heard.
+    // byte sent at 1203 is received.
     assert_eq!(outcome(&two, &input(482, 1_203)), (vec![1_355 + 160 + 2], FRAMING));
-    // Sent one cycle earlier, its first byte is ignored too, and so is the next.
+    // Sent one cycle earlier, its first byte is ignored, and so is the next.
     assert_eq!(outcome(&two, &input(482, 1_202)), (vec![], FRAMING));
-    // Straight after the error: a byte delivered at 1033 is ignored, at 1034 it is not ("before a byte
+    // Immediately after the error: a byte delivered at 1033 is ignored, at 1034 it is not ("before a byte
     // delivered in that very cycle is looked at … ignoring ends"), and with the next one it is a packet:
     // 0x82, 0x81.
     assert_eq!(outcome(&two, &input(881, 2_000)), (vec![2_312 + 2], FRAMING));
     let run = run(&two, &input(882, 1_042));
     assert_eq!(steps(&run, 0), [1_034 + 160 + 2, 1_034 + 160 + 12]);
     assert_eq!(steps(&run, 1), [1_034 + 160 + 2]);
-    // The zero that is left over is short.
+    // The remaining zero is too short.
     assert_eq!(run.faults, FRAMING | SHORT_PACKET);
 }
 
@@ -155,7 +155,7 @@ fn too_many_steps_drops_the_packet_and_sets_no_other_fault() {
     assert_eq!(outcome(&two, &sent(&[(1, &[0x84, 0x04])], 1_000)).1, 0);
     assert_eq!(outcome(&two, &sent(&[(1, &[0x84, 0x05])], 1_000)), (vec![], TOO_MANY_STEPS));
     assert_eq!(outcome(&two, &sent(&[(1, &[0x85, 0x00])], 1_000)), (vec![], TOO_MANY_STEPS));
-    // A foreign one is nobody's fault.
+    // A packet for another controller sets no fault.
     assert_eq!(outcome(&addressed(), &sent(&[(1, &[6, 0x7F])], 1_000)), (vec![], 0));
     assert_eq!(outcome(&addressed(), &sent(&[(1, &[255, 0x7F])], 1_000)), (vec![], TOO_MANY_STEPS));
     // Also when the queue is full: ticks of 4*500 cycles, one place.
@@ -180,7 +180,7 @@ fn a_packet_for_a_full_queue_is_dropped_completely() {
 
 #[test]
 fn a_place_freed_at_c0_equal_p_is_free_at_p() {
-    // As above the second tick leaves the queue at 954. A byte sent at 802 is delivered in that cycle.
+    // As above, the second tick leaves the queue at 954. A byte sent at 802 is delivered in that cycle.
     let config = Config { step_period: 200, queue_depth: 1, ..base() };
     let input = |third| sent(&[(1, &[1, 1]), (third, &[1])], 4_000);
     assert_eq!(outcome(&config, &input(801)), (vec![155, 955], QUEUE_OVERFLOW));
@@ -193,9 +193,9 @@ fn a_packet_during_boot_is_dropped_without_a_fault() {
     let boot = |boot| Config { boot, ..base() };
     assert_eq!(outcome(&boot(153), &sent(&[(1, &[STEP_RIGHT])], 400)), (vec![155], 0));
     assert_eq!(outcome(&boot(154), &sent(&[(1, &[STEP_RIGHT])], 400)), (vec![], 0));
-    // Reading: boot is judged first, so too many steps are no fault either.
+    // Reading: boot is checked first, so too many steps are no fault, either.
     assert_eq!(outcome(&boot(154), &sent(&[(1, &[0x7F])], 400)), (vec![], 0));
-    // The line is heard during boot: the packet's first byte may come then, and so may faults.
+    // Bytes are received during boot: the packet's first byte may arrive then, and faults may occur.
     let two = Config { channels: 2, boot: 313, ..base() };
     assert_eq!(outcome(&two, &sent(&[(1, &[STEP_RIGHT, 0])], 400)), (vec![315], 0));
     let two = Config { channels: 2, boot: 2_000, ..base() };

@@ -1,7 +1,7 @@
-//! A7: where in a slot the pulses and DIR changes stand, in each of the four modes.
+//! A7: positions of pulses and DIR changes in a slot, in each of the four modes.
 //!
-//! Three channels, addressed by none: three bytes back to back from cycle 1 are committed at 473, so c0 =
-//! 474 for the first tick. All times below are given from c0.
+//! Three channels without addresses: three bytes without pauses from cycle 1 are committed at 473, so c0 =
+//! 474 for the first tick. All times below are relative to c0.
 
 use super::*;
 
@@ -11,7 +11,7 @@ fn three() -> Config {
     Config { channels: 3, step_period: 30, settle: 8, ..base() }
 }
 
-/// STEP edges of channels 0..=2 and DIR changes of channel 0, from c0 on, of a tick with these orders.
+/// STEP edges of channels 0..=2 and DIR changes of channel 0, relative to c0, of a tick with these commands.
 #[derive(Debug, PartialEq)]
 struct Slots {
     step: [Vec<u64>; 3],
@@ -32,7 +32,7 @@ fn tick(config: &Config, orders: [u8; 3]) -> Slots {
     Slots { step, dir: edges(bits::DIR) }
 }
 
-/// Orders, then STEP edges a channel and DIR changes, from c0 on.
+/// Commands, then STEP edges per channel and DIR changes, relative to c0.
 type Row<'a> = ([u8; 3], [&'a [u64]; 3], &'a [(u64, bool)]);
 
 fn check(config: &Config, rows: &[Row]) {
@@ -57,7 +57,7 @@ fn simultaneous_channels_all_rise_at_s_plus_d() {
 #[test]
 fn dir_takes_its_level_at_c0_even_with_a_count_of_0() {
     check(&three(), &[([0x80, 0x00, 0x00], [&[], &[], &[]], &[(0, true)])]);
-    // The next tick takes it back.
+    // The next tick reverses it.
     let run = run(&three(), &sent(&[(1, &[0x80, 0x80, 0x00, 0x00, 0x80, 0x80])], 2_000));
     assert_eq!(edges(&run, bits::DIR), [(474, true), (954, false)]);
     assert_eq!(edges(&run, bits::DIR + 1), [(474, true)]);
@@ -73,7 +73,7 @@ fn the_jth_staggered_channel_rises_j_d_later() {
         &config,
         &[
             ([0x01, 0x01, 0x01], [&[1, 3], &[9, 11], &[17, 19]], &[]),
-            // j counts those that fire, in ascending channel order, right or left.
+            // j counts the stepping channels in ascending order, right or left.
             ([0x00, 0x01, 0x81], [&[], &[1, 3], &[9, 11]], &[]),
             // The second slot starts at 30, with two.
             ([0x01, 0x02, 0x02], [&[1, 3], &[9, 11, 31, 33], &[17, 19, 39, 41]], &[]),
@@ -137,7 +137,7 @@ fn with_a_common_dir_left_steps_precede_right_steps() {
         ],
     );
     let spread = Config { spread: true, ..config };
-    // M = 4, c = 1 fires in slot 1 only.
+    // M = 4, c = 1 steps in slot 1 only.
     check(&spread, &[([0x01, 0x81, 0x00], [&[33, 38], &[43, 48], &[]], &[(40, true)])]);
 }
 
@@ -161,11 +161,11 @@ fn staggered_with_common_dir_left_channels_precede_right_ones() {
         &[
             ([0x81, 0x01, 0x81], [&[9, 11], &[1, 3], &[17, 19]], &[(8, true)]),
             ([0x81, 0x01, 0x01], [&[17, 19], &[1, 3], &[9, 11]], &[(16, true)]),
-            // Only right ones: DIR = 1 at s, and no way back in the next slot.
+            // Only right steps: DIR = 1 at s, and no reversal in the next slot.
             ([0x81, 0x82, 0x00], [&[1, 3], &[9, 11, 31, 33], &[]], &[(0, true)]),
             // "DIR = 0 at s if there is a left one".
             ([0x02, 0x81, 0x00], [&[1, 3, 31, 33], &[9, 11], &[]], &[(8, true), (30, false)]),
-            // Only left ones: no change from reset.
+            // Only left steps: no change from reset.
             ([0x02, 0x00, 0x01], [&[1, 3, 31, 33], &[], &[9, 11]], &[]),
             ([0x80, 0x80, 0x80], [&[], &[], &[]], &[]),
         ],

@@ -75,11 +75,11 @@ fn rx_is_1_while_de_is_high() {
     let low = input(&[(1, status_of(5))], &[(1_300, 10_000, false)], 8_000);
     let run = run(&framed(5), &low);
     let rx = edges(&run, bits::RX);
-    // Low from the end of the frame on, but for DE; then armed, the receiver finds no stop bit.
+    // Low from the end of the frame on, except during DE; then the armed receiver finds no stop bit.
     assert_eq!(rx[rx.len() - 3..], [(1_300, false), (1_433, true), (4_169, false)]);
     assert_eq!(run.faults, FRAMING);
     let until = |cycles| super::run(&framed(5), &Input { cycles, ..low.clone() }).faults;
-    // The byte in progress at 1433 (from 1300) samples ones and is delivered; the error is the next one's, whose t is
+    // The byte in progress at 1433 (from 1300) samples ones and is delivered; the error is that of the next byte, whose t is
     // 4169: 4169 + 152 = 4321.
     assert_eq!((until(4_321), until(4_322)), (0, FRAMING));
 }
@@ -87,15 +87,15 @@ fn rx_is_1_while_de_is_high() {
 #[test]
 fn a_byte_in_progress_when_de_rises_samples_ones() {
     // A 0x00 after the frame: bit i is sampled at its start + 24 + 16*i, the stop bit at + 152. Where bit 7 is sampled
-    // before 1433 it is a 0x00, "nothing"; else it is 0x80, the begin of a run that a later 0x00 finds not to be COBS.
+    // before 1433 it is a 0x00, "nothing"; else it is 0x80, the start of a run that is not COBS at a later 0x00.
     for (start, faults) in [(1_281, 0), (1_296, 0), (1_297, SHORT_PACKET), (1_420, SHORT_PACKET)] {
         let sends = [(1, status_of(5)), (start, vec![0]), (6_000, vec![0])];
         assert_eq!(run(&framed(5), &input(&sends, &[], 8_000)).faults, faults, "0x00 from {start}");
     }
-    // A broken stop bit is none there: 1281 + 152 = 1433.
+    // A missing stop bit is no error there: 1281 + 152 = 1433.
     let sends = [(1, status_of(5)), (1_281, vec![0])];
     assert_eq!(run(&framed(5), &input(&sends, &[(1_433, 1, false)], 8_000)).faults, 0);
-    // A start bit whose middle lies there is a glitch.
+    // A start bit whose middle is there is a glitch.
     let sends = [(1, status_of(5)), (1_425, vec![0]), (6_000, vec![0])];
     assert_eq!(run(&framed(5), &input(&sends, &[], 8_000)).faults, 0);
 }
@@ -107,7 +107,7 @@ fn bytes_sent_during_a_reply_are_lost_and_later_ones_received() {
     assert_eq!(en(1_500), []);
     // From DE's fall on: p = 4169 + 1272.
     assert_eq!(en(4_169), [(5_442, false)]);
-    // One cycle before, the start bit is seen from 4169 on all the same.
+    // One cycle earlier, the start bit is still detected at 4169.
     assert_eq!(en(4_168), [(5_441, false)]);
 }
 
@@ -127,7 +127,7 @@ fn replies_of_other_controllers_change_nothing() {
         }
         assert_eq!((own.faults, own.state), (0, State::Ready));
     }
-    // Alone, the first would have answered alike.
+    // A single first controller would have replied in the same way.
     assert_eq!(
         run(&configs[0], &input(&sends, &[], 10_000)).trace.len(),
         1 + {
@@ -140,7 +140,7 @@ fn replies_of_other_controllers_change_nothing() {
 
 #[test]
 fn simultaneous_replies_are_received_as_their_and() {
-    // The same address twice: both answer, one READY and one BUSY, at rates a little apart.
+    // Two controllers with one address: both reply, one READY and one BUSY, at slightly different rates.
     let busy = Config { boot: 100_000, receiver_baud: 1_030, ..framed(5) };
     let configs = [framed(5), busy, framed(6)];
     let runs = run_line(&configs, &input(&[(1, status_of(5))], &[], 4_300));
@@ -150,11 +150,11 @@ fn simultaneous_replies_are_received_as_their_and() {
         assert_eq!(third[cycle], first[cycle] && second[cycle], "cycle {cycle}");
     }
     assert!(third[1_433..] != first[1_433..] && third[1_433..] != second[1_433..]);
-    // The second's DE falls at 4089, and then it hears the first's last byte, low from 4009 to 4152.
+    // The second's DE falls at 4089, and then it receives the first's last byte, low from 4009 to 4152.
     let rx = edges(&runs[1], bits::RX);
     assert_eq!(rx[rx.len() - 2..], [(4_089, false), (4_153, true)]);
     assert!(of(0, bits::RX)[1_433..4_300].iter().all(|high| *high));
-    // What the third hears is no good frame.
+    // The third receives no valid frame.
     assert_ne!(runs[2].faults, 0);
 }
 
@@ -167,7 +167,7 @@ fn a_forced_level_overrides_a_reply() {
         let rx = levels(&runs[1], bits::RX, 5_000);
         let [before, at, after] = [cycle - 1, cycle, cycle + 1].map(|cycle| rx[cycle as usize]);
         assert_eq!([before, at, after], [!level, level, !level], "cycle {cycle}");
-        // The sender itself hears and sends on.
+        // The sender itself receives 1 and continues.
         assert_eq!(levels(&runs[0], bits::TX, 5_000)[cycle as usize], !level);
         assert!(levels(&runs[0], bits::RX, 5_000)[cycle as usize]);
     }
@@ -186,9 +186,9 @@ fn every_controller_has_its_own_receiver_bus_and_queue() {
     let starts: Vec<_> = runs[..3].iter().map(|run| edges(run, bits::DIR)).collect();
     assert_eq!(starts, [vec![(17_522, true)], vec![(17_541, true)], vec![]]);
     assert_eq!([0, 1, 2].map(|k| runs[k].positions[0]), [1, 1, 0]);
-    // Two channels would have wanted two orders: BAD_BODY, which sets nothing.
+    // Two channels would need two commands: BAD_BODY, which sets nothing.
     assert_eq!([0, 1, 2].map(|k| runs[k].faults), [UNDERRUN, UNDERRUN, 0]);
     assert_eq!([0, 1, 2].map(|k| runs[k].expected_seq), [1, 1, 0]);
-    // Raw packets beside it: the same eleven bytes, among them counts above 4.
+    // A raw controller on the same line receives the same eleven bytes, among them counts above 4.
     assert_eq!((runs[3].faults, runs[3].positions), (TOO_MANY_STEPS, [0; 16]));
 }

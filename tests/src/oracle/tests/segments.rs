@@ -1,5 +1,5 @@
-//! A8: when segments step, when DIR changes, and which lists are refused. W = 2, D = H = 1: an interval is 4 cycles
-//! at least.
+//! A8: steps and DIR changes of segments, and refused lists. W = 2, D = H = 1: an interval has at least 4
+//! cycles.
 
 use super::*;
 use crate::oracle::segments::{Refused, Rule, Segment, run_segments};
@@ -15,10 +15,10 @@ fn left(steps: u32, interval: u64, add: i64) -> Segment {
     Segment::Steps { steps, interval, add, dir: false }
 }
 
-/// A list, and the changes of DIR.
+/// A list, and its changes of DIR.
 type DirRow<'a> = (&'a [Segment], &'a [(u64, bool)]);
 
-/// A list with its start, and the segment and the rule by which it is refused.
+/// A list with its start, and the segment and the rule of its refusal.
 type JudgedRow = (u64, Vec<Segment>, Option<(Option<usize>, Rule)>);
 
 fn run_one(config: &Config, start: u64, list: &[Segment], cycles: u64) -> Run {
@@ -41,12 +41,12 @@ fn each_step_follows_the_last_after_its_interval() {
         // `next` keeps its fraction from segment to segment: 11.5, 22, 32.5, and over a dwell of 0.5.
         (1, &[left(1, 10 * ONE + half, 0), left(2, 10 * ONE + half, 0)], &[11, 22, 32]),
         (1, &[left(1, 10 * ONE + half, 0), Dwell(half), left(1, 10 * ONE, 0)], &[11, 22]),
-        // A dwell first, between, 0, last, and nothing else.
+        // A dwell at the start, in the middle, of 0, at the end, and alone.
         (1, &[Dwell(7 * ONE), left(1, 10 * ONE, 0)], &[18]),
         (1, &[left(1, 10 * ONE, 0), Dwell(0), left(1, 10 * ONE, 0), Dwell(ONE)], &[11, 21]),
         (1, &[Dwell(0)], &[]),
         (1, &[], &[]),
-        // A queue of timer reloads, one a step.
+        // A queue of timer reloads, one per step.
         (1, &[left(1, 9 * ONE, 0), left(1, 8 * ONE, 0), left(1, 7 * ONE, 0)], &[10, 18, 25]),
     ];
     for (start, list, expected) in rows {
@@ -67,16 +67,16 @@ fn dir_changes_with_its_segment_after_the_hold_time() {
         (&[left(1, ten, 0)], &[]),
         (&[right(1, ten, 0)], &[(1, true)]),
         (&[Dwell(5 * ONE + ONE / 2), right(1, ten, 0)], &[(6, true)]),
-        // Rise 11, fall 13, H = 1: 14. A dwell of up to 3 cycles makes no difference.
+        // Rise 11, fall 13, H = 1: 14. A dwell of up to 3 cycles changes nothing.
         (&[left(1, ten, 0), right(1, ten, 0)], &[(14, true)]),
         (&[left(1, ten, 0), Dwell(3 * ONE), right(1, ten, 0)], &[(14, true)]),
         (&[left(1, ten, 0), Dwell(4 * ONE - 1), right(1, ten, 0)], &[(14, true)]),
         (&[left(1, ten, 0), Dwell(4 * ONE), right(1, ten, 0)], &[(15, true)]),
         (&[left(1, ten, 0), Dwell(100 * ONE), Dwell(ONE), right(1, ten, 0)], &[(112, true)]),
-        // Where it does not differ it does not change, and a dwell has no direction.
+        // An equal DIR does not change, and a dwell has no direction.
         (&[right(1, ten, 0), Dwell(ten), right(1, ten, 0)], &[(1, true)]),
         (&[right(1, ten, 0), left(1, ten, 0), right(1, ten, 0)], &[(1, true), (14, false), (24, true)]),
-        // The least interval leaves D = 1 cycle: rise 5, 9.
+        // The minimum interval leaves D = 1 cycle: rise 5, 9.
         (&[right(1, 4 * ONE, 0), left(1, 4 * ONE, 0)], &[(1, true), (8, false)]),
     ];
     for (list, expected) in rows {
@@ -128,12 +128,12 @@ fn a_refused_list_names_the_first_invalid_segment() {
         (1, vec![left(3, 4 * ONE + 1, -1)], Some((Some(0), ShortInterval))),
         (1, vec![left(1, 4 * ONE, i64::MIN)], None),
         (1, vec![left(2, 4 * ONE, i64::MIN)], Some((Some(0), IntervalLeavesU64))),
-        // The second interval is 2^63 - 1 longer, and a third would leave u64.
+        // The second interval is 2^63 - 1 longer, and a third would exceed u64.
         (1, vec![left(2, 4 * ONE, i64::MAX)], None),
         (1, vec![left(3, 4 * ONE, i64::MAX)], Some((Some(0), IntervalLeavesU64))),
         (1, vec![left(3, 1 << 62, 0)], None),
         (1, vec![left(4, 1 << 62, 0)], Some((Some(0), NextLeavesU64))),
-        // `next` starts at 1 << 16 and may come to u64::MAX.
+        // `next` starts at 1 << 16 and may reach u64::MAX.
         (1, vec![left(1, max - ONE, 0)], None),
         (1, vec![left(1, max - ONE + 1, 0)], Some((Some(0), NextLeavesU64))),
         (1, vec![Dwell(max - ONE), Dwell(0)], None),
@@ -153,7 +153,7 @@ fn a_refused_list_names_the_first_invalid_segment() {
     let bare = Config { dir_setup: 0, dir_hold: 0, ..base() };
     assert!(run_segments(&bare, &[(1, vec![left(1, 3 * ONE, 0)])], 100).is_ok());
     assert!(run_segments(&bare, &[(1, vec![left(1, 3 * ONE - 1, 0)])], 100).is_err());
-    // The channel is named.
+    // The channel is reported.
     let lists = [(1, vec![good()]), (1, vec![good(), left(0, ten, 0)])];
     let refused = run_segments(&Config { channels: 2, ..base() }, &lists, 100).err();
     assert_eq!(refused, Some(Refused { channel: 1, segment: Some(1), rule: NoSteps }));

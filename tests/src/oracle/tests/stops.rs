@@ -1,7 +1,7 @@
-//! A6 and A7 to the cycle: when an order shows, STOP and DISABLE beside a tick's end, UNDERRUN.
+//! A6 and A7 to the cycle: when a command takes effect, STOP and DISABLE near a tick's end, UNDERRUN.
 //!
-//! A tick of four slots of 2000 cycles, ordered by a frame that comes in P = 2753: c0 = 2754, STEP rises at 2764, 4764,
-//! 6764, 8764 and falls 500 cycles later, e = 10754. Orders for 255 are not answered, so that
+//! A tick of four slots of 2000 cycles, by a frame that arrives in P = 2753: c0 = 2754, STEP rises at 2764, 4764,
+//! 6764, 8764 and falls 500 cycles later, e = 10754. Frames for 255 get no reply, so
 //! they may follow each other.
 
 use super::*;
@@ -29,7 +29,7 @@ fn arriving(p: u64, address: u8, kind: u8, body: &[u8]) -> (u64, Vec<u8>) {
     (p - 152 - 160 * (bytes.len() as u64 - 1), bytes)
 }
 
-/// An order for all, in cycle `p`.
+/// A command for all, in cycle `p`.
 fn order(p: u64, kind: u8) -> (u64, Vec<u8>) {
     arriving(p, 255, kind, &[])
 }
@@ -65,7 +65,7 @@ fn en_follows_commands_in_the_next_cycle() {
 
 #[test]
 fn stop_ends_everything_in_the_next_cycle() {
-    // In the second pulse; before it; in its first cycle; in the pause after it.
+    // During the second pulse; before it; in its first cycle; in the pause after it.
     let rows: &[(u64, &[(u64, bool)])] = &[
         (5_000, &[(4_764, true), (5_001, false)]),
         (4_762, &[]),
@@ -98,7 +98,7 @@ fn stop_in_the_last_cycle_of_a_tick_cancels_the_next_start() {
     let run = stopped_at(E - 1);
     assert_eq!((run.ticks_done, run.positions[0], run.faults), (0, 4, 0));
     assert_eq!(edges(&run, bits::DIR), [(2_754, true)]);
-    // p = e: the first is counted; the second has c0 = p and is abandoned after its first cycle, in which STEP rose
+    // p = e: the first is counted; the second has c0 = p and is canceled after its first cycle, in which STEP rose
     // and DIR changed.
     let run = stopped_at(E);
     assert_eq!((run.ticks_done, run.positions[0], run.faults), (1, 3, 0));
@@ -111,7 +111,7 @@ fn after_stop_the_next_tick_starts_immediately() {
     let orders = [
         ticks(P, 0, &[0x84, 0x84]),
         order(5_000, STOP),
-        // STOPPED: not queued, and not this seq's turn for another.
+        // STOPPED: not queued, and the seq does not advance.
         ticks(7_000, 1, &[0x84]),
         order(8_500, ENABLE),
         ticks(10_300, 1, &[0x01]),
@@ -134,7 +134,7 @@ fn disable_is_busy_until_the_end_of_a_tick() {
     // Another tick starts at e.
     assert_eq!(disabled(&[4, 4], E), (vec![], 2));
     assert_eq!(disabled(&[4, 4], E + 8_000), (vec![(E + 8_001, false)], 2));
-    // A tick of no steps runs as well.
+    // A tick without steps also runs.
     assert_eq!(disabled(&[0], E - 1), (vec![], 1));
 }
 
@@ -162,13 +162,13 @@ fn positions_include_rises_in_the_cycle_of_the_frame() {
         let status = [state, free, 1, faults as u8, 0, done, 0, 0, 0];
         frame(5, 0x87, &[&status[..], &position.to_le_bytes()].concat())
     };
-    // STEP rises in 4764 and falls in 5264; in 8764 the last time.
+    // STEP rises in 4764 and falls in 5264; the last time in 8764.
     for (p, steps) in [(4_763, 1), (4_764, 2), (4_765, 2), (5_264, 2), (8_763, 3), (8_764, 4), (E - 1, 4)] {
         assert_eq!(positions_at(&[0x84], &[], p), reply(2, 8, 0, 0, steps), "p = {p}");
         assert_eq!(positions_at(&[4], &[], p), reply(2, 8, 0, 0, -steps), "p = {p}");
     }
     assert_eq!(positions_at(&[0x84], &[], E), reply(1, 8, UNDERRUN, 1, 4));
-    // The second tick goes back, from 10764 on.
+    // The second tick moves back, from 10764 on.
     assert_eq!(positions_at(&[0x84, 4], &[], 10_763), reply(2, 8, 0, 1, 4));
     assert_eq!(positions_at(&[0x84, 4], &[], 10_764), reply(2, 8, 0, 1, 3));
     // "a pulse that STOP cuts short counts": STOP in 4764 itself, and one cycle before the rise.
@@ -181,7 +181,7 @@ fn positions_include_rises_in_the_cycle_of_the_frame() {
 fn a_place_freed_in_the_cycle_of_the_frame_is_free() {
     let config = Config { queue_depth: 1, ..long() };
     for (p, faults, done) in [(E - 1, QUEUE_OVERFLOW, 2), (E, 0, 3)] {
-        // The first runs, the second takes the place until e.
+        // The first runs; the second occupies the place until e.
         let sends = [ticks(P, 0, &[0]), ticks(5_000, 1, &[0]), ticks(p, 2, &[0])];
         let run = run_sent(&config, &sends, 40_000);
         assert_eq!((run.faults, run.ticks_done), (faults, done), "p = {p}");
@@ -210,7 +210,7 @@ fn underrun_is_a_moving_tick_without_a_successor() {
         let run = run_sent(&long(), &[first(&[4]), ticks(p, 1, &[0x81, 0])], 40_000);
         assert_eq!((run.faults, edges(&run, bits::DIR)[0]), (faults, (c0, true)), "p = {p}");
     }
-    // RESYNC in that cycle comes after it, one cycle before too early.
+    // RESYNC in that cycle comes after it, one cycle earlier before it.
     assert_eq!(faults(&long(), &[first(&[4]), order(E - 1, RESYNC)], 40_000), UNDERRUN);
     assert_eq!(faults(&long(), &[first(&[4]), order(E, RESYNC)], 40_000), 0);
     // "never because of STOP".

@@ -1,4 +1,4 @@
-//! A7: when ticks start and end, in which slots a count fires, what is counted, what is refused.
+//! A7: starts and ends of ticks, the slots of a count, counters, and refusals.
 
 use super::*;
 
@@ -25,7 +25,7 @@ fn the_next_tick_starts_after_the_last_one_and_its_commit() {
 
 #[test]
 fn queued_ticks_follow_each_other_without_a_pause() {
-    // Four packets at 153, 313, 473, 633; ticks of 400 cycles at 154, 554, 954, 1354; every slot fires, Ts
+    // Four packets at 153, 313, 473, 633; ticks of 400 cycles at 154, 554, 954, 1354; a step in every slot, Ts
     // = 100.
     let config = Config { step_period: 100, queue_depth: 3, ..base() };
     let run = run(&config, &sent(&[(1, &[4, 4, 4, 4])], 2_000));
@@ -40,7 +40,7 @@ fn ticks_are_counted_at_their_end() {
     for (cycles, expected) in [(154, 0), (194, 0), (195, 1), (400, 1)] {
         assert_eq!(run(&base(), &sent(&[(1, &[0x81])], cycles)).ticks_done, expected, "{cycles} cycles");
     }
-    // A tick of zero counts is a tick.
+    // A tick without counts is a tick.
     assert_eq!(run(&base(), &sent(&[(1, &[0x00])], 195)).ticks_done, 1);
 }
 
@@ -92,7 +92,7 @@ fn positions_count_rises_by_the_direction_of_the_same_cycle() {
     assert_eq!(steps(&full, 0), [154, 164, 174, 314]);
     assert_eq!(edges(&full, bits::DIR), [(154, true), (314, false)]);
     assert_eq!(full.positions[0], 2);
-    // A rise in the last cycle of the run counts, a later one does not.
+    // A rise in the last cycle of the run counts; a later one does not.
     for (cycles, position) in [(154, 0), (155, 1), (164, 1), (165, 2), (175, 3), (314, 3), (315, 2)] {
         assert_eq!(run(&config, &input(cycles)).positions[0], position, "{cycles} cycles");
     }

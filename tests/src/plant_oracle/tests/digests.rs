@@ -1,4 +1,4 @@
-//! K1, K2 and K3 of F10: the same bits as the contract's.
+//! K1, K2 and K3 of F10: the digests of the contract.
 
 use super::*;
 

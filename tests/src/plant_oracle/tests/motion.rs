@@ -1,4 +1,4 @@
-//! Rest, ringing, coasting, direct starts and the chopper of F10.
+//! Standstill, oscillation, coasting, direct starts and the chopper of F10.
 
 use super::*;
 use crate::plant_oracle::edges::EN;
@@ -23,7 +23,7 @@ fn standstill_under_gravity() {
 
 #[test]
 fn coasting_without_current() {
-    // A rotor that was brought up to 1000 full steps/s coasts w*w*M/(2*Fc) from where its currents are gone.
+    // A rotor at 1000 full steps/s coasts by w*w*M/(2*Fc) after its currents have ended.
     let mut bus = Bus::default();
     bus.order(1, edges::DIR, true);
     let mut rise = 1600;
@@ -87,13 +87,13 @@ fn chopper_at_rest() {
         let run = run(&alone(Motor { drive, ..Motor::default() }, &Bus::default(), 1_600_000));
         let late: Vec<f64> = run.points[20_000..].iter().map(|point| point.motors[0].i_a).collect();
         close(late.iter().sum::<f64>() / late.len() as f64, mean_a, 0.005 * mean_a);
-        // A period has one turn from rising to falling.
+        // Each period has one maximum.
         let tops = late.windows(3).filter(|three| three[0] < three[1] && three[1] > three[2]).count();
         close(tops as f64 / (late.len() as f64 * 1e-6), rate_hz, 0.01 * rate_hz);
     }
 }
 
-/// x after each of so many grid steps of 5 us from a rest that is `away` full steps off.
+/// x after each of a number of grid steps of 5 us, from standstill `away` full steps from equilibrium.
 fn rings(motor: &Motor, away: f64, steps: usize) -> Vec<f64> {
     let mut state = MotorState::new(motor, CLOCK, 80);
     state.x += away;
@@ -118,7 +118,7 @@ fn the_default_rotor_oscillates_at_282_hz() {
     }
     let (first, tenth) = (tops[0], tops[10]);
     close(10.0 / ((tenth.0 - first.0) * 5e-6), 282.09, 0.06);
-    // A height falls by exp(-0.1182) a period: by exp(-1.182) in ten.
+    // The maximum falls by exp(-0.1182) per period: by exp(-1.182) in ten.
     close(tenth.1 / first.1, 0.30666, 0.30666 * 0.01182);
 }
 
@@ -132,7 +132,7 @@ fn two_masses_oscillate_at_98_and_456_hz() {
         ..Motor::default()
     };
     let x = rings(&motor, 0.01, 200_000);
-    // The power at a frequency by Goertzel's recurrence, the sine by the oracle's own.
+    // The power at a frequency by Goertzel's recurrence, with the model's own sine.
     let power = |hz: f64| {
         let twice_cos = 2.0 * sincos(4.0 * hz * 5e-6).1;
         let (mut last, mut before) = (0.0, 0.0);

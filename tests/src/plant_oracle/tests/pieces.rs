@@ -1,4 +1,4 @@
-//! The pieces that stand alone: XXH64, SplitMix64, sine, exponential, segments, refusals.
+//! Independent parts: XXH64, SplitMix64, sine, exponential, segments, refusals.
 
 use super::*;
 use crate::{plant_oracle::numbers::exp_of_minus, xxh64::xxh64};

@@ -1,4 +1,4 @@
-//! What the random cases are: repeatable, and broad enough to reach every branch that the digest sees.
+//! The random cases are repeatable, and reach every branch that affects the digest.
 
 use super::*;
 use crate::plant_oracle::edges::EN;

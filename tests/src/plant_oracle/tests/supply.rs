@@ -27,14 +27,14 @@ fn delta_t_p_of_the_patent_set() {
     let run = run(&alone(patent_motor(), &bus, 1600 + 32_768 * 12));
     let seen = step_seen(&run.sensed_supply(), 1600 + 32_768 * 10, 32_768, 0.2).unwrap();
     close(seen.i_q, 0.2167, 0.002);
-    // F10 tells the current itself, not its deviation.
+    // F10 has the current itself, not its deviation.
     close(seen.i_q + seen.least, -0.481, 0.005);
     close(seen.i_q + seen.greatest, 0.922, 0.012);
     close(seen.reached.unwrap() as f64 / 16_000.0, 0.515, 0.006);
     close(seen.settled.unwrap() as f64 / 16_000.0, 0.512, 0.006);
 }
 
-/// Four motors, full steps, so many cycles a step, each later than the one before by `stagger`.
+/// Four motors, full steps, this number of cycles per step, each later than the previous by `stagger`.
 fn four(motor: Motor, steps: u32, stagger: u64) -> Case {
     let lists: Vec<_> = (0..4)
         .map(|channel| (1600 + channel * stagger, vec![Segment::whole(steps, 32_768, 0, true)]))
