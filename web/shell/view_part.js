@@ -14,6 +14,7 @@
  * | `omotor` | which of motion, panel and motor is open |
  * | `umm` | unit of the motion view; by default the unit of the first distance |
  * | `ysine` | tab of the study |
+ * | `qphases-supply` | quantities of the motor view |
  *
  * Defaults are left out. Invalid and unknown parts, such as those of a later version, are ignored; of two parts of one kind the
  * first counts. A published part never changes its meaning.
@@ -61,6 +62,12 @@ const PARTS = {
   u: field("unit", (text) => known(text, UNITS)),
   y: field("study", (text) => known(text, STUDIES)),
   o: side("motion"),
+  q: {
+    put: (view, text) => {
+      if (/^[a-z]+(-[a-z]+)*$/.test(text)) view.quantities ??= text.split("-");
+    },
+    of: ({ quantities }) => quantities?.join("-"),
+  },
 };
 
 /** @param {string} text @param {number} [max] */
@@ -100,7 +107,7 @@ export function writeView(view) {
 export function viewOf(state) {
   if (!state) return "";
   if (state.pendingView) return writeView(state.pendingView);
-  const { window, controller, axis, cursors, view, sides, unit, study } = state;
+  const { window, controller, axis, cursors, view, sides, unit, study, quantities } = state;
   return writeView({
     window: window ?? undefined,
     controller: controller || undefined,
@@ -111,5 +118,6 @@ export function viewOf(state) {
     sides,
     unit: unit ?? undefined,
     study: study === "compare" ? undefined : study,
+    quantities: quantities ?? undefined,
   });
 }

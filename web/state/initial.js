@@ -33,6 +33,7 @@ export const FRESH_VIEW = {
   axis: 0,
   hiddenAxes: [],
   unit: null,
+  quantities: null,
   row: 0,
   folds: {},
 };

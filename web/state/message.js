@@ -27,6 +27,7 @@
  *   | {type: "fold", channel: number, folded: boolean} | {type: "fold-all", folded: boolean}
  *   | {type: "all-signals", on: boolean}
  *   | {type: "controller", controller: number} | {type: "side", area: string, side: string}
+ *   | {type: "quantities", names: string[]}
  *   | {type: "axis", axis: number} | {type: "unit", unit: State["unit"]} | {type: "axes", hidden: number[]}
  *   | {type: "pane", panes: Partial<import("./types.js").Panes>} | {type: "empty", view: string, isEmpty: boolean}
  *   | {type: "rows", rows: Partial<import("./row_choices.js").RowChoices>}

@@ -61,6 +61,7 @@ function showView(state, view) {
     sides: view.sides ?? {},
     study: view.study ?? state.study,
     unit: view.unit ?? null,
+    quantities: view.quantities ?? null,
   };
 }
 

@@ -82,7 +82,7 @@
  * @typedef {{error: string | null, same: boolean, edges: number, version: string | null, own_version: string, controller: number,
  *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} SenderComparison  Comparison of a run with that of the sender of the link.
  * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, sides?: {[area: string]: string},
- *   unit?: "steps" | "mm" | "deg", study?: StudyName}} ViewPart  The view in a link; missing parts have their defaults.
+ *   unit?: "steps" | "mm" | "deg", study?: StudyName, quantities?: string[]}} ViewPart  The view in a link; missing parts have their defaults.
  *
  * @typedef {"compare" | "measures" | "tables" | "sine" | "torque" | "motor"} StudyName  Tabs of the study.
  *
@@ -116,6 +116,7 @@
  * @property {number} axis          Axis of the motion view.
  * @property {"steps" | "mm" | "deg" | null} unit  Unit of the motion view; null is the unit in which the motion was typed.
  * @property {number[]} hiddenAxes  Axes that the motion view does not draw.
+ * @property {string[] | null} quantities  Quantities of the motor view; null is the default.
  * @property {number | null} hover  Cycle under the pointer.
  * @property {{start: number, end: number, from: string, packet: number | null, bit: number | null} | null} highlighted  A packet, a part of it, an edge or a bit of the line, in cycles, which all views highlight. `from` is the view under the pointer.
  * @property {(number | null)[]} markers  Cycles of the markers 0 to 9.

@@ -97,6 +97,8 @@ export function update(state, message) {
       return { ...state, axis: message.axis };
     case "axes":
       return { ...state, hiddenAxes: message.hidden };
+    case "quantities":
+      return { ...state, quantities: message.names };
     case "unit":
       return { ...state, unit: message.unit };
     case "pane":

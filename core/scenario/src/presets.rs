@@ -106,7 +106,7 @@ presets! {
     PLANT_PRESETS:
     Motor, PATENT => "patent-2019-figure-1", "325000-353000.tmotor";
     Motor, PATENT => "patent-2019-figure-2", "320000-760000.tmotor";
-    Motor, PATENT => "patent-2019-overload", "0-80000.tmotor";
+    Motor, PATENT => "patent-2019-overload", "0-80000.tmotor.qphases-supply";
     Motor, SONG => "song-2021-motor", "tmotor";
     Motor, SONG => "song-2021-direct-start", "tmotor";
     Motor, SONG => "song-2021-stall", "tmotor";

@@ -12,7 +12,7 @@ import { swatch } from "../lines.js";
 import { createChoice } from "./choice.js";
 import { createSummary } from "./motor_summary.js";
 import { showNumbers } from "./numbers.js";
-import { channelOf, chartOf, marksOf, QUANTITIES, shownQuantities } from "./quantities.js";
+import { channelOf, chartOf, marksOf, QUANTITIES, visibleQuantities } from "./quantities.js";
 
 /** @typedef {import("../../state/types.js").State} State */
 /** @typedef {import("./numbers.js").Report} Report */
@@ -52,10 +52,10 @@ export function createMotor({ engine, dispatch, now }) {
     const { title, short: label = title } = quantity;
     const press = element("button", { type: "button", "aria-pressed": "false", "aria-label": title, title }, label);
     press.addEventListener("click", () => {
-      if (shownQuantities.has(quantity.name) && shownQuantities.size > 1) shownQuantities.delete(quantity.name);
-      else shownQuantities.add(quantity.name);
-      arrange();
-      paint();
+      const names = visibleQuantities(now()).map(({ name }) => name);
+      const others = names.filter((name) => name !== quantity.name);
+      if (others.length === names.length) dispatch({ type: "quantities", names: [...names, quantity.name] });
+      else if (others.length > 0) dispatch({ type: "quantities", names: others });
     });
     return { quantity, canvas, reading, root, press };
   });
@@ -80,11 +80,17 @@ export function createMotor({ engine, dispatch, now }) {
     dispatch({ type: "view", view: "study" });
   });
 
+  function shownCharts() {
+    const visible = visibleQuantities(now());
+    return charts.filter(({ quantity }) => visible.includes(quantity));
+  }
+
   /** Distributes the height among the visible charts; the last one has the time labels. */
   function arrange() {
-    const visibleCharts = charts.filter(({ quantity }) => shownQuantities.has(quantity.name));
-    for (const { quantity, root, press } of charts) {
-      root.hidden = !shownQuantities.has(quantity.name);
+    const visibleCharts = shownCharts();
+    for (const each of charts) {
+      const { root, press } = each;
+      root.hidden = !visibleCharts.includes(each);
       press.setAttribute("aria-pressed", String(!root.hidden));
     }
     // --chart-px is the minimum height of a chart; with more charts than fit the view scrolls.
@@ -132,7 +138,7 @@ export function createMotor({ engine, dispatch, now }) {
     const { start, end } = curveWindow;
     const marks = marksOf(report, channelOf(state), curveWindow, clock);
     const time = { from: start / clock, to: end / clock, marks };
-    const visibleCharts = charts.filter(({ quantity }) => shownQuantities.has(quantity.name));
+    const visibleCharts = shownCharts();
     for (const { quantity, canvas } of visibleCharts) {
       const last = quantity === visibleCharts[visibleCharts.length - 1].quantity;
       const { range, chart } = chartOf(quantity, curves, time, last);
@@ -173,8 +179,7 @@ export function createMotor({ engine, dispatch, now }) {
 
   /** The visible values as text. @param {(line: {of: string}) => string} valueText */
   function sentence(valueText) {
-    const quantities = QUANTITIES.filter(({ name }) => shownQuantities.has(name));
-    return quantities
+    return visibleQuantities(now())
       .map(
         ({ title, unit, lines }) =>
           `${title} ${lines.map((each) => `${each.label} ${valueText(each)}`).join(", ")} ${unit}`,
@@ -197,6 +202,10 @@ export function createMotor({ engine, dispatch, now }) {
       Array.from({ length: count }, (_, i) => [String(i), String(i)]),
       String(channelOf(state)),
     );
+    if (before?.quantities !== state.quantities) {
+      arrange();
+      paint();
+    }
     if (before?.scenario !== state.scenario) choice.show(state, report !== null);
     if (resultOfReport !== state.result || before?.result !== state.result) return loadReport(state);
     if (before?.axis !== state.axis) summary.show(state, report, channelOf(state));

@@ -63,11 +63,15 @@ export const QUANTITIES = [
   },
 ];
 
-/** Names of the visible quantities. */
-export const shownQuantities = new Set(["angle", "error", "phases", "supply"]);
+/** Names of the quantities that are visible by default. */
+const DEFAULT = ["angle", "error", "phases", "supply"];
 
-/** The visible quantities in order. */
-export const visibleQuantities = () => QUANTITIES.filter(({ name }) => shownQuantities.has(name));
+/** The visible quantities in order; the default ones if a link only has unknown names. @param {State} state */
+export function visibleQuantities({ quantities }) {
+  const among = (/** @type {string[]} */ names) => QUANTITIES.filter(({ name }) => names.includes(name));
+  const found = among(quantities ?? []);
+  return found.length > 0 ? found : among(DEFAULT);
+}
 
 /** The channel of the visible motor: the selected axis, or the last channel. @param {State} state */
 export const channelOf = (state) => Math.min(state.axis, (selected(state)?.channels ?? 1) - 1);

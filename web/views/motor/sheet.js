@@ -33,7 +33,7 @@ async function requestCurves(state, engine, columns) {
 /** @param {State} state @param {Engine} engine @param {number} columns  Of the picture. @returns {Promise<{about: string, legend: {name: string, ink: string, dash: number}[], panels: {caption: string, chart: import("../../time/plot.js").Chart, height: number}[]}>} */
 export async function motorPanels(state, engine, columns) {
   const { curves, channel, from, to, marks } = await requestCurves(state, engine, columns);
-  const all = visibleQuantities();
+  const all = visibleQuantities(state);
   return {
     about: `motor ${channel} · ${time(from)} to ${time(to)}`,
     legend: [],
@@ -52,7 +52,7 @@ export async function motorPanels(state, engine, columns) {
 /** The visible curves as CSV, with the minimum and maximum of each column. @param {State} state @param {Engine} engine @param {number} columns */
 export async function motorValues(state, engine, columns) {
   const { curves } = await requestCurves(state, engine, columns);
-  const lines = visibleQuantities().flatMap(({ unit, lines }) => lines.map(({ of }) => ({ of, unit })));
+  const lines = visibleQuantities(state).flatMap(({ unit, lines }) => lines.map(({ of }) => ({ of, unit })));
   const head = ["time (s)", ...lines.flatMap(({ of, unit }) => [`${of} min (${unit})`, `${of} max (${unit})`])];
   const { x } = curves[lines[0].of];
   return csv([
