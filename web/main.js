@@ -2,12 +2,12 @@
  * The page: creates the state, the engine and the views. Each change flows from message to state, validation, run and
  * drawing. Folders and files only import from their left, which a test checks:
  *
- *     pkg -> pkg-tools -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> start -> main.js
+ *     pkg -> pkg-recordings -> state -> dom.js -> engine -> shell -> time -> form -> help -> views -> start -> main.js
  */
 
 import { byId } from "./dom.js";
 import { Engine, unlessDropped } from "./engine/engine.js";
-import { preloadTools } from "./engine/wasm.js";
+import { preloadRecordings } from "./engine/wasm.js";
 import { createForm } from "./form/form.js";
 import { problemText } from "./form/problem_places.js";
 import { createRemedyRequests } from "./form/remedy_requests.js";
@@ -60,7 +60,7 @@ const engine = new Engine({
   },
   done: (revision, summary, ms) => {
     dispatch({ type: "done", revision, summary, ms });
-    preloadTools();
+    preloadRecordings();
   },
   failed: (revision, message) => {
     if (revision === state.revision) dispatch({ type: "failed", message: `The run stopped: ${message}` });

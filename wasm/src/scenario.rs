@@ -17,7 +17,6 @@ impl ValidatedScenario {
     }
 }
 
-#[cfg(feature = "tools")]
 impl ValidatedScenario {
     /// Axis `axis` of controller `controller`. Errors: if the scenario has problems, or no such axis.
     pub(crate) fn axis(&self, controller: usize, axis: usize) -> Result<sim::SelectedAxis<'_>, JsError> {

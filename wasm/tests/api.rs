@@ -7,7 +7,7 @@ use js::{get, list, number, text};
 use js_sys::{Float64Array, Uint32Array};
 use stepscope_wasm::{
     ValidatedScenario,
-    tools::{sheets, with_motor},
+    study::{sheets, with_motor},
     view::{Simulation, default_scenario, drivers, open_link, presets, version},
 };
 use wasm_bindgen::{JsCast, JsValue};

@@ -49,7 +49,7 @@ export function openCapture(file, onProgress, options = {}) {
       if (data.id === undefined) return reject(new Error(data.error));
       requests.settle(data);
     };
-    compiled("tools").then((module) => {
+    compiled("recordings").then((module) => {
       worker.postMessage({ module });
       worker.postMessage(typeof file === "string" ? { sample: file } : { file, most: MAX_ROWS, ...options });
     }, reject);
@@ -65,8 +65,8 @@ export function openCapture(file, onProgress, options = {}) {
     preview: (request) => call("preview", { most: MAX_SHOWN, ...request }),
     /** Overview of a channel. @param {number} channel @param {number} columns @returns {Promise<Columns | null>} */
     overview: (channel, columns) => call("overview", channel, columns),
-    /** The scenario of the recording. @param {boolean} ofSteps @returns {Promise<string>} */
-    scenario: (ofSteps) => call("scenario", sample?.file ?? /** @type {File} */ (file).name, ofSteps),
+    /** Scenarios of the recording; the first one without problems is to be shown. @param {boolean} ofSteps @returns {Promise<string[]>} */
+    scenarios: (ofSteps) => call("scenarios", sample?.file ?? /** @type {File} */ (file).name, ofSteps),
     /** Packets on its lines: the first `maxRows`, and all as CSV. @param {boolean} addressed @param {number} maxRows @returns {Promise<LinePackets | null>} */
     packets: (addressed, maxRows) => call("packets", addressed, maxRows),
     /** Replies on TX, by the addresses of controllers. @param {number[]} addresses @returns {Promise<Replies | undefined>} */

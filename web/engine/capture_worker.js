@@ -4,7 +4,7 @@
  * In: first {module}, the compiled code; {file, most, map, base} or {sample}, replied with {progress}, then {facts} or {error};
  * {id, method, args}, replied with {id, value} or {id, error}.
  */
-import init, * as core from "../pkg-tools/stepscope_wasm.js";
+import init, * as core from "../pkg-recordings/stepscope_wasm.js";
 import { errorMessage } from "../state/error_message.js";
 import { awaitModule, isFatal } from "./worker_common.js";
 

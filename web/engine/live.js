@@ -100,7 +100,7 @@ export function openLive(notify) {
       }
       notify(data);
     };
-    compiled("tools").then(
+    compiled().then(
       (module) => started.postMessage({ module }),
       (error) => fail(`this part of the page could not be loaded: ${error.message}`),
     );

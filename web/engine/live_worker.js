@@ -7,7 +7,7 @@
  * Out: {facts}; {state} and {rows} while the port is open; {reported} or {recorded} at the end; {closed}; {error}, after which
  * the worker cannot be used.
  */
-import init, * as core from "../pkg-tools/stepscope_wasm.js";
+import init, * as core from "../pkg/stepscope_wasm.js";
 import { errorMessage } from "../state/error_message.js";
 import { openPort } from "./live_port.js";
 import { awaitModule, isFatal } from "./worker_common.js";

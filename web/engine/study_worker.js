@@ -14,7 +14,7 @@ import init, {
   step_walker,
   ValidatedScenario,
   with_motor,
-} from "../pkg-tools/stepscope_wasm.js";
+} from "../pkg/stepscope_wasm.js";
 import { errorMessage } from "../state/error_message.js";
 import { awaitModule, createScenarioCache, isFatal } from "./worker_common.js";
 

@@ -1,16 +1,16 @@
 /**
- * The two wasm modules, fetched and compiled once for the page and all workers: the core, and the tools, loaded in the
- * background. The HTML has their addresses, because built files have other names.
+ * The two wasm modules, fetched and compiled once for the page and all workers: the simulation, and the recordings,
+ * loaded in the background. The HTML has their addresses, because built files have other names.
  */
 import { byId } from "../dom.js";
 
-/** Addresses; the help page has only the core. */
+/** Addresses; the help page has only the simulation. */
 const ADDRESSES = {
   core: () => /** @type {HTMLLinkElement} */ (byId("core")).href,
-  tools: () => byId("main").dataset.toolsCore ?? "",
+  recordings: () => byId("main").dataset.recordingsCore ?? "",
 };
 
-/** Delay of the tools after the first result, in ms. */
+/** Delay of the recordings after the first result, in ms. */
 const PRELOAD_MS = 500;
 
 /** @type {{[which in keyof typeof ADDRESSES]?: Promise<WebAssembly.Module>}} */
@@ -29,12 +29,12 @@ export function compiled(which = "core") {
 
 let preloaded = false;
 
-/** Loads the tools after the first result. */
-export function preloadTools() {
+/** Loads the module of recordings after the first result. */
+export function preloadRecordings() {
   // With data saving they load on demand.
   if (preloaded || /** @type {any} */ (navigator).connection?.saveData) return;
   preloaded = true;
-  setTimeout(() => compiled("tools").catch(() => {}), PRELOAD_MS);
+  setTimeout(() => compiled("recordings").catch(() => {}), PRELOAD_MS);
 }
 
 /** @param {string} address */

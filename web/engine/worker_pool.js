@@ -110,7 +110,7 @@ export class WorkerPool {
 /** A worker with the tools. @param {string} missing */
 function startWorker(missing) {
   const worker = new Worker(/** @type {string} */ (byId("main").dataset.studyWorker), { type: "module" });
-  compiled("tools").then(
+  compiled().then(
     (module) => worker.postMessage({ module }),
     () => worker.dispatchEvent(new ErrorEvent("error", { message: missing })),
   );

@@ -85,10 +85,10 @@ fn is_page(file: &str) -> bool {
 const IMMEDIATE: [&str; 4] = ["href=\"", "src=\"", "data-worker=\"", "\"src\": \""];
 /// Attributes with files that scripts of the page request later; the files of one row load together.
 const LATER: [&[&str]; 4] = [
-    &["data-study-worker=\"", "data-tools-core=\"", "data-study-style=\""],
-    &["data-capture-worker=\"", "data-tools-core=\""],
+    &["data-study-worker=\"", "data-study-style=\""],
+    &["data-capture-worker=\"", "data-recordings-core=\""],
     &["data-panel-style=\""],
-    &["data-live-worker=\"", "data-tools-core=\"", "data-live-style=\""],
+    &["data-live-worker=\"", "data-live-style=\""],
 ];
 
 fn references(text: &str) -> impl Iterator<Item = &str> {

@@ -75,7 +75,7 @@ enum Task {
         #[command(flatten)]
         optimize: OptimizeOption,
     },
-    /// Build the page's wasm into web/pkg and web/pkg-tools, for `serve`
+    /// Build the page's wasm into web/pkg and web/pkg-recordings, for `serve`
     Build {
         #[command(flatten)]
         optimize: OptimizeOption,

@@ -16,7 +16,7 @@ const WORDS: &str = include_str!("words.txt");
 const ARROW: &str = " => ";
 const FOLDERS: [&str; 6] = ["cli/src", "core", "docs", "firmware", "wasm/src", "web"];
 /// Built from sources that are checked.
-const EXCEPT: [&str; 2] = ["web/pkg", "web/pkg-tools"];
+const EXCEPT: [&str; 2] = ["web/pkg", "web/pkg-recordings"];
 
 struct Rule {
     word: String,

@@ -30,7 +30,7 @@ const MOCK: &str = "(role, json, stays) => {
         worker.onerror = fail;
         worker.onmessage = ({ data }) => { peer.told.push(data); begun(worker); };
         peer.end = () => worker.postMessage({ end: true });
-        const compiled = fetch(main.toolsCore).then((response) => response.arrayBuffer()).then(WebAssembly.compile);
+        const compiled = fetch(document.getElementById('core').href).then((response) => response.arrayBuffer()).then(WebAssembly.compile);
         compiled.then((module) => { worker.postMessage({ module }); worker.postMessage({ validate: json }); }, fail);
     });
     let other;

@@ -12,21 +12,33 @@ const MAX_SHOWN: usize = 20_000;
 const MAX_TITLE: usize = 120;
 
 impl LoadedCapture {
-    /// The scenario to show: [`Self::scenario`], or an idle one with its clock, channels and duration.
+    /// The first valid one of [`Self::candidates`].
     pub fn shown_scenario(&self, file: &str, steps: bool) -> Scenario {
-        let reproduced = if self.part.is_none() { self.scenario(file, steps, 0.0, None).ok() } else { None };
+        let (reproduced, idle) = self.candidates(file, steps);
+        reproduced.filter(|reproduced| reproduced.check().is_ok()).unwrap_or(idle)
+    }
+
+    /// The scenarios to show: one that reproduces it, not yet checked, unless it is too long to edit; and for a
+    /// reproduction with problems an idle one with its clock, channels and duration.
+    pub fn candidates(&self, file: &str, steps: bool) -> (Option<Scenario>, Scenario) {
+        let reproduced =
+            if self.part.is_none() { self.reproduction(file, steps, 0.0, None).ok() } else { None };
+        let run_cycles = Some(self.run_cycles());
         let reproduced = reproduced
-            .filter(|reproduced| reproduced.clock_hz == self.clock_hz && entries(reproduced) <= MAX_SHOWN);
-        let mut scenario = reproduced.unwrap_or_else(|| {
-            let mut scenario = Scenario { clock_hz: self.clock_hz, ..Scenario::default() };
-            scenario.bus.channels = self.channels;
-            scenario.source = Source::Segments(SegmentLists::default());
-            scenario.title = title(file);
-            scenario.note = format!(
-                "Recorded in {file}. No editable scenario reproduces it: it is too long, too fast for the bus, or has another clock. stepscope capture --write-scenario reports the reason, or writes a long scenario."
-            );
-            scenario
-        });
+            .filter(|reproduced| reproduced.clock_hz == self.clock_hz && entries(reproduced) <= MAX_SHOWN)
+            .map(|reproduced| Scenario { run_cycles, ..reproduced });
+        let mut idle = Scenario { clock_hz: self.clock_hz, run_cycles, ..Scenario::default() };
+        idle.bus.channels = self.channels;
+        idle.source = Source::Segments(SegmentLists::default());
+        idle.title = title(file);
+        idle.note = format!(
+            "Recorded in {file}. No editable scenario reproduces it: it is too long, too fast for the bus, or has another clock. stepscope capture --write-scenario reports the reason, or writes a long scenario."
+        );
+        (reproduced, idle)
+    }
+
+    /// Cycles of a run up to its end, its last record and its last byte.
+    fn run_cycles(&self) -> u64 {
         let last = self.records.last().map_or(0, |record| record.cycle.0);
         let end = libm::ceil(self.end_s * f64::from(self.clock_hz)) as u64;
         // The last byte ends after the last edge.
@@ -34,12 +46,28 @@ impl LoadedCapture {
             let bit_cycles = BitTimes::new(self.clock_hz, line.baud).bit(1).0;
             Some(scenario::end_of(&line.decoded, bit_cycles)?.0 + bit_cycles)
         });
-        scenario.run_cycles = Some(end.max(last).max(decoded.unwrap_or(0)) + 1);
-        scenario
+        end.max(last).max(decoded.unwrap_or(0)) + 1
     }
 
     /// The scenario that reproduces its bytes for the controllers of `base`, or its steps within `error_us`.
     pub fn scenario(
+        &self,
+        file: &str,
+        steps: bool,
+        error_us: f64,
+        base: Option<&Scenario>,
+    ) -> Result<Scenario, NotReproducible> {
+        let scenario = self.reproduction(file, steps, error_us, base)?;
+        match scenario.check() {
+            Ok(_) => Ok(scenario),
+            Err(problems) => {
+                Err(problems.into_iter().next().map_or(NotReproducible::NoBytes, NotReproducible::Invalid))
+            }
+        }
+    }
+
+    /// [`Self::scenario`] without its check.
+    fn reproduction(
         &self,
         file: &str,
         steps: bool,
@@ -65,12 +93,7 @@ impl LoadedCapture {
         }?;
         let mut scenario = Scenario { note: scenario::note(file, &reproduced), ..reproduced.scenario };
         scenario.title = title(file);
-        match scenario.check() {
-            Ok(_) => Ok(scenario),
-            Err(problems) => {
-                Err(problems.into_iter().next().map_or(NotReproducible::NoBytes, NotReproducible::Invalid))
-            }
-        }
+        Ok(scenario)
     }
 }
 

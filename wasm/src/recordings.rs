@@ -26,6 +26,7 @@ use stepscope_core::{
         },
     },
     peripheral::signal::Levels,
+    scenario::Scenario,
 };
 use wasm_bindgen::prelude::*;
 
@@ -330,9 +331,12 @@ impl CaptureFile {
         }))
     }
 
-    /// The scenario that reproduces it, as JSON, or if that is too long, one with its clock and channels.
-    pub fn scenario(&self, file: &str, steps: bool) -> Option<String> {
-        Some(self.loaded.as_ref()?.shown_scenario(file, steps).to_json())
+    /// Scenarios as JSON, of which the first one without problems is to be shown: one that reproduces it, if that is
+    /// short enough to edit, and an idle one with its clock and channels. None before a preview.
+    pub fn scenarios(&self, file: &str, steps: bool) -> Vec<String> {
+        let Some(loaded) = &self.loaded else { return Vec::new() };
+        let (reproduced, idle) = loaded.candidates(file, steps);
+        reproduced.iter().chain([&idle]).map(Scenario::to_json).collect()
     }
 
     /// Its packets: `{total, replies, rows, csv}`, with the first `most` rows. `addressed`: raw packets begin with an address.

@@ -1,8 +1,6 @@
-//! The study, recordings, exports and real serial lines.
+//! The study: comparisons, tables, torque, and tables of edges.
 
-mod capture;
 mod compare;
-mod live;
 mod measures;
 mod motors;
 mod remedies;
@@ -12,8 +10,6 @@ mod tables;
 mod torque;
 mod trace_file;
 
-pub use capture::{CaptureFile, sample_facts};
-pub use live::{LiveDevice, LiveHost, LiveRawHost, live_is_raw};
 pub use measures::step_figures;
 pub use motors::{sheets, with_motor};
 pub use replay::replay;
