@@ -1,6 +1,6 @@
 //! Results as JavaScript values.
 
-use js_sys::{Float64Array, Object, Reflect};
+use js_sys::{Object, Reflect};
 use serde::Serialize;
 use stepscope_core::peripheral::signal::{Levels, Record};
 use stepscope_core::peripheral::units::Instant;
@@ -15,8 +15,9 @@ pub(crate) fn field(object: &Object, name: &str, value: &JsValue) {
     let _ = Reflect::set(object, &name.into(), value);
 }
 
+#[cfg(feature = "simulation")]
 pub(crate) fn numbers(object: &Object, name: &str, values: &[f64]) {
-    field(object, name, &Float64Array::from(values));
+    field(object, name, &js_sys::Float64Array::from(values));
 }
 
 /// Records of 16 bytes: cycle and levels, little-endian.
