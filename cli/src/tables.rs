@@ -1,228 +1,24 @@
 //! `stepscope tables`: step times of a scenario's axes as tables for a firmware.
 
+mod axes;
 mod export;
 mod options;
 
-use self::options::{FormName, Search, WindowName, Written};
+pub(crate) use self::options::Arguments;
+
+use self::axes::Axes;
+use self::options::{AxisChoice, FormName, Written};
 use crate::failure::{Failure, Numbered};
-use crate::options::{Json, Out};
-use crate::quantity::{Microseconds, whole};
-use crate::{json::Tables, output, run_recording, scenarios, steps::steps_of_table};
-use clap::Args;
+use crate::{json::Tables, output};
 use serde_json::json;
 use std::io::{self, Write};
-use std::num::NonZeroU32;
-use std::path::{Path, PathBuf};
 use stepscope_core::{
-    inspect::export::{
-        source_code::{WALKER, check_name},
-        step_tables::{scheduled, tolerance_cycles},
-    },
+    inspect::export::source_code::WALKER,
     motion::{
-        AxisPlan, Cause, ScheduledStep, plan_lists, round_half_up,
-        step_tables::{EntryFormat, Form, Stored, Tolerance, stored, stored_steps},
+        Cause, round_half_up,
+        step_tables::{EntryFormat, Stored},
     },
-    peripheral::{config::Config, segment::PulseTimes, trace::steps},
-    scenario::{Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
-    sim::Experiment,
 };
-
-#[derive(Args)]
-pub(crate) struct Arguments {
-    /// Scenario: a JSON file or a preset's name; `-` reads standard input
-    ///
-    /// If its source is not a motion, the steps of its run are used. With --steps, only its clock and pulse times are
-    /// used (default: 16 MHz and the default bus).
-    #[arg(required_unless_present_any = ["steps", "walker"])]
-    scenario: Option<PathBuf>,
-    /// Read step times from a CSV table, as axis 0
-    ///
-    /// One row per step. The column cycle, time_s, time_ms or time_us has the time from the start; the column dir has
-    /// the direction: 1 or right, 0 or left.
-    #[arg(long, value_name = "FILE")]
-    steps: Option<PathBuf>,
-    /// Form of the table (default: exact; for a summary, all)
-    #[arg(long, value_enum)]
-    form: Option<FormName>,
-    /// Maximum error of a step in a compressed table, in us (default: 25)
-    #[arg(long, value_name = "US")]
-    error_us: Option<Microseconds>,
-    /// Maximum error of a step in a compressed table, as 1/N of a step interval (Klipper: 2)
-    ///
-    /// Applies in addition to --error-us. The interval is the shorter of the two next to the step; with --window early,
-    /// the one before it.
-    #[arg(long, value_name = "N", value_parser = whole::<NonZeroU32>(1..=u32::MAX.into()))]
-    interval_part: Option<NonZeroU32>,
-    /// Allowed direction of the error in a compressed table (default: both)
-    #[arg(long, value_enum)]
-    window: Option<WindowName>,
-    /// Search method of a compressed table (default: fewest)
-    ///
-    /// With q8 and q16, fewest differs from quick only if the maximum error is below 2048 units of the format (q8:
-    /// 8 cycles, q16: 1/32 cycle).
-    #[arg(long, value_enum)]
-    search: Option<Search>,
-    /// Format of an entry: q16, q8, ticks or klipper (default: ticks; for a summary, all)
-    ///
-    /// q16 has 20 bytes and a resolution of 1/65536 cycle, q8 has 8 bytes and 1/256 cycle, ticks has 8 bytes and whole
-    /// cycles. klipper is another name for ticks: the arguments of Klipper's queue_step.
-    #[arg(long, value_name = "FORMAT", value_parser = entry_format)]
-    entries: Option<EntryFormat>,
-    /// Output format
-    #[arg(long, value_enum, default_value = "summary", conflicts_with = "json")]
-    format: Written,
-    /// Axis, from 0, or all in one file (default: 0; for a summary, all)
-    #[arg(long, value_name = "K", value_parser = axis_choice)]
-    axis: Option<AxisChoice>,
-    /// Name of the table in source code (default: axis_K)
-    ///
-    /// Use up to 32 lower-case letters, digits and underscores after a first letter. Keywords of C, C++ and avr-libc are
-    /// refused, and names that begin with stepscope. With --axis all the tables are NAME_0, NAME_1 and so on.
-    #[arg(long, value_parser = table_name, conflicts_with = "json")]
-    name: Option<String>,
-    /// Also write stepscope_walk.h, which tables in C include, next to --out
-    #[arg(long)]
-    with_walker: bool,
-    /// Write only stepscope_walk.h
-    #[arg(long, conflicts_with_all = ["scenario", "steps", "with_walker", "check", "json", "name", "form",
-        "entries", "error_us", "interval_part", "window", "search", "format", "axis"])]
-    walker: bool,
-    /// Compare a table with the plan, step by step; exit code 3 if it differs
-    ///
-    /// FILE is a table in C; without FILE, the table that --format c would write is compared. The direction of each step must
-    /// be that of the plan, and its time must be within the error that the table states. The stated shortest and longest event
-    /// must be correct, too. The first table of a file belongs to --axis, by default the axis in its header. No file is
-    /// written.
-    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["json", "with_walker"])]
-    check: Option<Option<PathBuf>>,
-    #[command(flatten)]
-    json: Json,
-    #[command(flatten)]
-    out: Out,
-}
-
-/// Maximum error of a compressed table by default, in us.
-const ERROR_US: f64 = 25.0;
-
-impl Arguments {
-    fn error_us(&self) -> f64 {
-        self.error_us.map_or(ERROR_US, Microseconds::get)
-    }
-}
-
-fn entry_format(text: &str) -> Result<EntryFormat, String> {
-    let name = if text == "klipper" { EntryFormat::TICKS.name } else { text };
-    let found = EntryFormat::ALL.into_iter().find(|format| format.name == name);
-    found.ok_or_else(|| "unknown format; use q16, q8, ticks or klipper".to_owned())
-}
-
-fn table_name(text: &str) -> Result<String, String> {
-    check_name(text).map(|()| text.to_owned())
-}
-
-#[derive(Clone, Copy)]
-enum AxisChoice {
-    One(usize),
-    All,
-}
-
-fn axis_choice(text: &str) -> Result<AxisChoice, String> {
-    if text == "all" {
-        return Ok(AxisChoice::All);
-    }
-    whole::<usize>(0..=u64::MAX)(text).map(AxisChoice::One).map_err(|why| format!("{why}, or all"))
-}
-
-struct Axes {
-    path: PathBuf,
-    scenario: Scenario,
-    /// The text of `--steps`.
-    listed: Option<String>,
-    clock_hz: u32,
-    pulse: PulseTimes,
-    axes: Vec<Steps>,
-    tolerance: Tolerance,
-    search: Search,
-}
-
-enum Steps {
-    Planned(AxisPlan),
-    Listed(Vec<ScheduledStep>),
-}
-
-impl Axes {
-    fn new(arguments: &Arguments) -> Result<Self, Failure> {
-        let scenario = arguments.scenario.as_deref().map(scenarios::read).transpose()?.unwrap_or_default();
-        let path = arguments.scenario.clone().unwrap_or_else(|| PathBuf::from("the default scenario"));
-        let wrong = |problems| Failure::Scenario(path.clone(), problems);
-        // Without a motion, use the steps of the scenario's run.
-        let run_steps = match (&scenario.source, &arguments.steps) {
-            (ScenarioSource::Motion(_), _) | (_, Some(_)) => None,
-            _ => Some(steps_of_run(&path, &scenario)?),
-        };
-        let clock_hz = scenario.clock_hz;
-        let config = Config::of_segments(clock_hz, &scenario.bus, &scenario.line.serial());
-        let pulse = PulseTimes::from(&config.map_err(of_config).map_err(wrong)?);
-        let cycles = tolerance_cycles(arguments.error_us(), clock_hz);
-        let (interval_part, search) = (arguments.interval_part, arguments.search.unwrap_or_default());
-        let tolerance =
-            Tolerance { cycles, interval_part, side: arguments.window.unwrap_or_default().side() };
-        let listed = arguments.steps.as_deref().map(scenarios::text).transpose()?;
-        let (path, axes) = if let (Some(list), Some(text)) = (&arguments.steps, &listed) {
-            let steps = steps_of_table(text, clock_hz).map_err(|why| Failure::Invalid(list.clone(), why))?;
-            (list.clone(), vec![Steps::Listed(steps)])
-        } else if let Some(run_steps) = run_steps {
-            (path, run_steps.into_iter().map(Steps::Listed).collect())
-        } else {
-            let list = match &scenario.source {
-                ScenarioSource::Motion(motion) => Some(motion.axis_list()),
-                _ => None,
-            };
-            let plans = plan_lists(list);
-            let plans = plans.map_err(of_motion).map_err(wrong)?;
-            (path, plans.into_iter().flatten().map(Steps::Planned).collect())
-        };
-        Ok(Self { path, scenario, listed, clock_hz, pulse, axes, tolerance, search })
-    }
-
-    fn stored(&self, steps: &Steps, form: FormName, format: EntryFormat) -> Result<Stored, Cause> {
-        let form = match (form, self.search) {
-            (FormName::Exact, _) => Form::Exact,
-            (FormName::Document, _) => Form::Document,
-            (FormName::Compressed, Search::Fewest) => Form::Compressed(self.tolerance),
-            (FormName::Compressed, Search::Quick) => Form::Quick(self.tolerance),
-        };
-        match steps {
-            Steps::Planned(plan) => stored(plan, form, format, self.pulse, self.clock_hz),
-            Steps::Listed(steps) => stored_steps(steps, form, format, self.pulse),
-        }
-    }
-
-    fn failure(&self, axis: usize, cause: Cause) -> Failure {
-        if let Some(Steps::Listed(_)) = self.axes.get(axis) {
-            return Failure::Invalid(self.path.clone(), cause.to_string());
-        }
-        let problem = Problem::new(format!("source.motion.axes[{axis}]"), cause);
-        Failure::Scenario(self.path.clone(), problem.into())
-    }
-}
-
-/// Steps of the scenario's run from cycle 1, for each channel up to the last one with steps.
-fn steps_of_run(path: &Path, scenario: &Scenario) -> Result<Vec<Vec<ScheduledStep>>, Failure> {
-    let wrong = |problems| Failure::Scenario(path.to_owned(), problems);
-    let experiment = Experiment::new(scenario).map_err(wrong)?;
-    let recording = run_recording::of(path, &experiment)?;
-    let of = |channel| scheduled(&steps(&recording.trace, channel));
-    let mut all: Vec<_> = (0..experiment.config().channels()).map(of).collect();
-    while all.last().is_some_and(Vec::is_empty) {
-        all.pop();
-    }
-    if all.is_empty() {
-        let detail = "no channel has steps, so there is no table; use a scenario with steps, or --steps";
-        return Err(wrong(Problem::new("source", ValueError::Conflict { detail }).into()));
-    }
-    Ok(all)
-}
 
 pub(crate) fn tables(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.walker {

@@ -1,7 +1,7 @@
 //! Tables as files of source code, and `--check`.
 
-use super::options::{FormName, Search, WindowName};
-use super::{Arguments, Axes, AxisChoice, Steps};
+use super::axes::{Axes, Steps};
+use super::options::{Arguments, AxisChoice, FormName, Search, WindowName};
 use crate::failure::{Failure, plural};
 use crate::output::{self, Outputs, STANDARD};
 use crate::{progress, scenarios, terminal};

@@ -1,9 +1,119 @@
-//! Choices of `stepscope tables`, and options that would have no effect.
+//! Options of `stepscope tables`, and those that would have no effect.
 
-use super::Arguments;
 use crate::failure::Failure;
-use clap::ValueEnum;
-use stepscope_core::{inspect::export::source_code::Language, motion::step_tables::Side};
+use crate::options::{Json, Out};
+use crate::quantity::{Microseconds, whole};
+use clap::{Args, ValueEnum};
+use std::num::NonZeroU32;
+use std::path::PathBuf;
+use stepscope_core::inspect::export::source_code::{Language, check_name};
+use stepscope_core::motion::step_tables::{EntryFormat, Side};
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Scenario: a JSON file or a preset's name; `-` reads standard input
+    ///
+    /// If its source is not a motion, the steps of its run are used. With --steps, only its clock and pulse times are
+    /// used (default: 16 MHz and the default bus).
+    #[arg(required_unless_present_any = ["steps", "walker"])]
+    pub(super) scenario: Option<PathBuf>,
+    /// Read step times from a CSV table, as axis 0
+    ///
+    /// One row per step. The column cycle, time_s, time_ms or time_us has the time from the start; the column dir has
+    /// the direction: 1 or right, 0 or left.
+    #[arg(long, value_name = "FILE")]
+    pub(super) steps: Option<PathBuf>,
+    /// Form of the table (default: exact; for a summary, all)
+    #[arg(long, value_enum)]
+    pub(super) form: Option<FormName>,
+    /// Maximum error of a step in a compressed table, in us (default: 25)
+    #[arg(long, value_name = "US")]
+    pub(super) error_us: Option<Microseconds>,
+    /// Maximum error of a step in a compressed table, as 1/N of a step interval (Klipper: 2)
+    ///
+    /// Applies in addition to --error-us. The interval is the shorter of the two next to the step; with --window early,
+    /// the one before it.
+    #[arg(long, value_name = "N", value_parser = whole::<NonZeroU32>(1..=u32::MAX.into()))]
+    pub(super) interval_part: Option<NonZeroU32>,
+    /// Allowed direction of the error in a compressed table (default: both)
+    #[arg(long, value_enum)]
+    pub(super) window: Option<WindowName>,
+    /// Search method of a compressed table (default: fewest)
+    ///
+    /// With q8 and q16, fewest differs from quick only if the maximum error is below 2048 units of the format (q8:
+    /// 8 cycles, q16: 1/32 cycle).
+    #[arg(long, value_enum)]
+    pub(super) search: Option<Search>,
+    /// Format of an entry: q16, q8, ticks or klipper (default: ticks; for a summary, all)
+    ///
+    /// q16 has 20 bytes and a resolution of 1/65536 cycle, q8 has 8 bytes and 1/256 cycle, ticks has 8 bytes and whole
+    /// cycles. klipper is another name for ticks: the arguments of Klipper's queue_step.
+    #[arg(long, value_name = "FORMAT", value_parser = entry_format)]
+    pub(super) entries: Option<EntryFormat>,
+    /// Output format
+    #[arg(long, value_enum, default_value = "summary", conflicts_with = "json")]
+    pub(super) format: Written,
+    /// Axis, from 0, or all in one file (default: 0; for a summary, all)
+    #[arg(long, value_name = "K", value_parser = axis_choice)]
+    pub(super) axis: Option<AxisChoice>,
+    /// Name of the table in source code (default: axis_K)
+    ///
+    /// Use up to 32 lower-case letters, digits and underscores after a first letter. Keywords of C, C++ and avr-libc are
+    /// refused, and names that begin with stepscope. With --axis all the tables are NAME_0, NAME_1 and so on.
+    #[arg(long, value_parser = table_name, conflicts_with = "json")]
+    pub(super) name: Option<String>,
+    /// Also write stepscope_walk.h, which tables in C include, next to --out
+    #[arg(long)]
+    pub(super) with_walker: bool,
+    /// Write only stepscope_walk.h
+    #[arg(long, conflicts_with_all = ["scenario", "steps", "with_walker", "check", "json", "name", "form",
+        "entries", "error_us", "interval_part", "window", "search", "format", "axis"])]
+    pub(super) walker: bool,
+    /// Compare a table with the plan, step by step; exit code 3 if it differs
+    ///
+    /// FILE is a table in C; without FILE, the table that --format c would write is compared. The direction of each step must
+    /// be that of the plan, and its time must be within the error that the table states. The stated shortest and longest event
+    /// must be correct, too. The first table of a file belongs to --axis, by default the axis in its header. No file is
+    /// written.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["json", "with_walker"])]
+    pub(super) check: Option<Option<PathBuf>>,
+    #[command(flatten)]
+    pub(super) json: Json,
+    #[command(flatten)]
+    pub(super) out: Out,
+}
+
+/// Maximum error of a compressed table by default, in us.
+const ERROR_US: f64 = 25.0;
+
+impl Arguments {
+    pub(super) fn error_us(&self) -> f64 {
+        self.error_us.map_or(ERROR_US, Microseconds::get)
+    }
+}
+
+fn entry_format(text: &str) -> Result<EntryFormat, String> {
+    let name = if text == "klipper" { EntryFormat::TICKS.name } else { text };
+    let found = EntryFormat::ALL.into_iter().find(|format| format.name == name);
+    found.ok_or_else(|| "unknown format; use q16, q8, ticks or klipper".to_owned())
+}
+
+fn table_name(text: &str) -> Result<String, String> {
+    check_name(text).map(|()| text.to_owned())
+}
+
+#[derive(Clone, Copy)]
+pub(super) enum AxisChoice {
+    One(usize),
+    All,
+}
+
+fn axis_choice(text: &str) -> Result<AxisChoice, String> {
+    if text == "all" {
+        return Ok(AxisChoice::All);
+    }
+    whole::<usize>(0..=u64::MAX)(text).map(AxisChoice::One).map_err(|why| format!("{why}, or all"))
+}
 
 #[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
 pub(super) enum WindowName {

@@ -36,7 +36,7 @@ impl Language {
     }
 }
 
-/// A step table and the prefix of its identifiers, which must be valid for [`check_name`].
+/// A step table and the prefix of its identifiers, which must be valid for [`check_name`](super::check_name).
 #[derive(Clone, Debug)]
 pub struct NamedTable<'s> {
     pub name: String,
