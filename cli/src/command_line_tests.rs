@@ -94,7 +94,7 @@ fn no_output_may_be_an_input_or_another_output() {
             for name in paths.read {
                 fs::write(file(name), "input").expect("a file");
             }
-            checked(line(template, file, None)).expect("each has a file of its own");
+            checked(line(template, file, None)).expect("each has its own file");
             for written in paths.written {
                 for read in paths.read {
                     let found = checked(line(template, file, Some((written, file(read)))));

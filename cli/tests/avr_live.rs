@@ -189,7 +189,8 @@ fn ctrl_c_stops_the_firmware_and_reports_its_positions() {
 #[test]
 #[ignore = "builds for an AVR and runs simavr: cargo xtask test --only avr"]
 fn the_firmware_passes_the_checks_of_an_independent_host() {
-    let python = env::var_os("STEPSCOPE_PYTHON").expect("`cargo xtask test --only avr` says where Python is");
+    let python =
+        env::var_os("STEPSCOPE_PYTHON").expect("`cargo xtask test --only avr` sets the path of Python");
     let judge = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/judges/host.py");
     let board = Board::on("judged");
     let judged =

@@ -73,7 +73,7 @@ fn stepscope(arguments: &[&str]) -> Command {
 fn python(script: &str, arguments: &[&str]) -> Command {
     let judges = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/judges");
     let python =
-        env::var_os("STEPSCOPE_PYTHON").expect("`cargo xtask test --only live` says where Python is");
+        env::var_os("STEPSCOPE_PYTHON").expect("`cargo xtask test --only live` sets the path of Python");
     let mut command = Command::new(python);
     command.arg("-B").arg(judges.join(script)).args(arguments);
     command
@@ -195,7 +195,7 @@ fn the_python_example_of_the_documentation_runs() {
     let server = Running::start(stepscope(&["serve", "framed-link", "--pty", text(&link), "--lag", "1000"]));
     let script = file("documented.py", &lines.replace("/tmp/stepscope", text(&link)));
     let python =
-        env::var_os("STEPSCOPE_PYTHON").expect("`cargo xtask test --only live` says where Python is");
+        env::var_os("STEPSCOPE_PYTHON").expect("`cargo xtask test --only live` sets the path of Python");
     let ran = Command::new(python).arg(script).output().expect("it runs");
     let out = String::from_utf8_lossy(&ran.stdout);
     assert!(ran.status.success(), "{out}{}", String::from_utf8_lossy(&ran.stderr));

@@ -126,7 +126,7 @@ fn cases() -> [(&'static str, &'static str, u64, u8, &'static [&'static str]); 4
 }
 
 #[test]
-#[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
+#[ignore = "needs programs of GTKWave and sigrok: cargo xtask test --only vcd"]
 fn gtkwave_reads_the_same_edges() {
     let [to_waves, from_waves] = ["vcd2fst", "fst2vcd"].map(program);
     for (title, json, clock_hz, channels, options) in cases() {
@@ -140,7 +140,7 @@ fn gtkwave_reads_the_same_edges() {
 }
 
 #[test]
-#[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
+#[ignore = "needs programs of GTKWave and sigrok: cargo xtask test --only vcd"]
 fn sigrok_reads_the_same_edges() {
     let sigrok = program("sigrok-cli");
     // sigrok would take samples of 1 ps, which is far too slow.
@@ -160,7 +160,7 @@ fn sigrok_reads_the_same_edges() {
 
 /// sigrok takes a sample per timescale unit, so a fine timescale makes a short move very long.
 #[test]
-#[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
+#[ignore = "needs programs of GTKWave and sigrok: cargo xtask test --only vcd"]
 fn sigrok_opens_a_dump_with_few_samples() {
     let sigrok = program("sigrok-cli");
     let (_, dump) = run("sigrok-move", "{}", &[]);

@@ -39,11 +39,7 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
         "IEEE 754 leaves a square root no choice of bits, and a test compares them",
     ),
     ("core/inspect/src/export/vcd.rs", "io", "only the trait that bytes are written through"),
-    (
-        "core/capture/src/read/mod.rs",
-        "io",
-        "only the traits that bytes are read through; whoever calls opens the file",
-    ),
+    ("core/capture/src/read/mod.rs", "io", "only traits for reading bytes; the caller opens the file"),
     (
         "core/capture/src/read/source.rs",
         "io",

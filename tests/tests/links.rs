@@ -22,7 +22,7 @@ use stepscope_core::{
 /// digests: each still opens as its scenario, and `--verify` reports where the runs differ. Only a decision in
 /// docs/decisions.md may add a line.
 const OTHER_RUNS: &[(&str, &str)] = &[
-    ("82bd8736", "a framed link: the host asks for positions first and last"),
+    ("82bd8736", "a framed link: the host requests positions at the start and the end"),
     ("02482e43", "a framed link on a noisy line: as above"),
     ("72a08697", "four controllers on one framed line: as above"),
 ];

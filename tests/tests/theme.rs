@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-type Colours = BTreeMap<String, [u8; 3]>;
+type Colors = BTreeMap<String, [u8; 3]>;
 
 fn theme() -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../web/style/theme.css");
@@ -10,7 +10,7 @@ fn theme() -> String {
 }
 
 /// The custom properties whose colors the rule with this selector sets.
-fn colours(css: &str, selector: &str) -> Colours {
+fn colors(css: &str, selector: &str) -> Colors {
     let (_, rest) = css.split_once(&format!("{selector} {{")).unwrap_or_else(|| panic!("no rule {selector}"));
     let (block, _) = rest.split_once('}').expect("the rule ends");
     let declared = block.split(';').filter_map(|line| line.trim().strip_prefix("--")?.split_once(": #"));
@@ -23,17 +23,17 @@ fn colours(css: &str, selector: &str) -> Colours {
         .collect()
 }
 
-fn light() -> Colours {
-    colours(&theme(), ":root")
+fn light() -> Colors {
+    colors(&theme(), ":root")
 }
 
-fn dark() -> Colours {
-    colours(&theme(), ":root[data-theme=\"dark\"]")
+fn dark() -> Colors {
+    colors(&theme(), ":root[data-theme=\"dark\"]")
 }
 
 /// Relative luminance, 0 to 1.
-fn luminance(colour: [u8; 3]) -> f64 {
-    let [red, green, blue] = colour.map(|part| {
+fn luminance(color: [u8; 3]) -> f64 {
+    let [red, green, blue] = color.map(|part| {
         let part = f64::from(part) / 255.0;
         if part <= 0.04045 { part / 12.92 } else { libm::pow((part + 0.055) / 1.055, 2.4) }
     });
@@ -49,8 +49,8 @@ fn contrast(one: [u8; 3], other: [u8; 3]) -> f64 {
 /// Fails with all pairs of these colors and backgrounds that have a lower contrast.
 fn at_least(least: f64, names: &[&str], grounds: &[&str]) {
     let mut low = Vec::new();
-    for (theme, colours) in [("light", light()), ("dark", dark())] {
-        let of = |name: &str| *colours.get(name).unwrap_or_else(|| panic!("{theme} has no --{name}"));
+    for (theme, colors) in [("light", light()), ("dark", dark())] {
+        let of = |name: &str| *colors.get(name).unwrap_or_else(|| panic!("{theme} has no --{name}"));
         for (name, ground) in names.iter().flat_map(|name| grounds.iter().map(move |ground| (name, ground))) {
             let ratio = contrast(of(name), of(ground));
             if ratio < least {
@@ -74,7 +74,7 @@ fn contrasts_of_known_colors_match_the_standard() {
 
 #[test]
 fn both_selectors_of_dark_mode_have_the_same_colors() {
-    assert_eq!(colours(&theme(), ":root:not([data-theme=\"light\"])"), dark());
+    assert_eq!(colors(&theme(), ":root:not([data-theme=\"light\"])"), dark());
     assert_eq!(light().keys().collect::<Vec<_>>(), dark().keys().collect::<Vec<_>>());
 }
 

@@ -449,7 +449,7 @@ fn a_host_that_gives_up_reports_the_cause() {
     let stop =
         r#"{"line":{"protocol":"framed"},"source":{"line":{"sends":[{"start_cycle":2000,"frame":"ff05"}]}}}"#;
     let summary = expect_ok(finished(stop).summary());
-    assert!(get(&summary, "host").is_null(), "nobody waits for replies to a script");
+    assert!(get(&summary, "host").is_null(), "the host of a script does not wait for replies");
     assert_eq!(text(&list(&summary, "controllers")[0], "state"), "STOPPED");
 }
 

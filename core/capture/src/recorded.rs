@@ -44,7 +44,7 @@ pub struct Rounding {
     pub rounded: u64,
     /// Changes in the cycle of the previous change.
     pub merged: u64,
-    /// Signals that changed twice within a cycle, and steps without room for a pulse.
+    /// Signals that changed twice within a cycle, and steps without space for a pulse.
     pub lost: u64,
     /// Simultaneous changes of both encoder inputs, or CW and CCW high together: no step is counted.
     pub ambiguous: u64,

@@ -144,7 +144,7 @@ fn a_zip_with_overlapping_files_or_false_sizes_is_refused() {
     };
     let good = files(&[("logic-1-1", vec![0, 1, 0]), ("logic-1-2", vec![0, 1, 0])]);
     assert_eq!(refused(&good), None);
-    // The directory's entry of the second piece leads to the first.
+    // The directory's entry of the second piece points to the first.
     let entries: Vec<usize> =
         (0..good.len() - 4).filter(|at| good[*at..].starts_with(b"PK\x01\x02")).collect();
     let mut overlapping = good.clone();
@@ -201,7 +201,7 @@ fn a_zip_with_overlapping_files_or_false_sizes_is_refused() {
     );
 }
 
-/// Programs differ in which of two values they use.
+/// Programs differ in the value that they use if there are two.
 #[test]
 fn a_session_with_a_repeated_value_is_refused() {
     let refused = |files: &[(&str, &[u8])]| {
@@ -230,12 +230,12 @@ fn a_session_with_a_repeated_value_is_refused() {
             "{line}"
         );
     }
-    // Values of a second device decide nothing.
+    // Values of a second device are ignored.
     let metadata = [METADATA, b"[device 2]\nsamplerate=2 MHz\nprobe1=B\n"].concat();
     assert_eq!(refused(&[("metadata", &metadata), samples]), None);
 }
 
-/// 70 pieces that are apart, each with a declared size of 4 GB.
+/// 70 separate pieces with a declared size of 4 GB each.
 #[test]
 fn a_session_of_terabytes_is_refused() {
     let mut all = vec![("metadata".to_string(), METADATA.to_vec())];
@@ -285,7 +285,7 @@ fn a_session_may_have_names_that_are_not_utf8() {
     assert_eq!((reading.error, reading.capture.changes.len()), (None, 3));
 }
 
-/// Gaps without end: no text is looked for.
+/// Endless gaps: no text is searched.
 #[test]
 fn a_line_of_a_megabyte_is_read() {
     let bytes = 1 << 18;

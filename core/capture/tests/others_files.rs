@@ -1,5 +1,5 @@
-//! Files that other people's programs have written, and the same edges in each: GTKWave's (`vcd2fst`, `fst2vcd`) and
-//! sigrok's, on which PulseView stands.
+//! Files of other programs with the same edges: GTKWave (`vcd2fst`, `fst2vcd`) and sigrok, the base of
+//! PulseView.
 //!
 //! `cargo xtask test --only vcd` installs these first, and runs it.
 #![allow(clippy::expect_used, clippy::panic, reason = "a missing file or program fails the test")]
@@ -57,7 +57,7 @@ fn recording() -> Vec<Change> {
     changes
 }
 
-/// The recording as a dump, of which `other` is one more line that has nothing to do with it.
+/// The recording as a dump; `other` is an additional, unrelated line.
 fn dump(name: &str) -> PathBuf {
     let mut text = String::from("$timescale 1 us $end\n$scope module top $end\n$scope module motor $end\n");
     for (name, code) in NAMES.iter().zip('!'..) {
@@ -81,7 +81,7 @@ fn dump(name: &str) -> PathBuf {
     path
 }
 
-/// The same edges at the same times, whatever the scopes and the time base are.
+/// Checks that edges and times are the same, regardless of scopes and time base.
 fn same(capture: &Capture, format: Format) {
     let names: Vec<&str> =
         capture.channels.iter().filter_map(|channel| channel.name.rsplit('.').next()).collect();
@@ -150,7 +150,7 @@ fn sigroks_files_have_the_same_edges() {
     }
 }
 
-/// sigrok's own device for demonstrations: many pieces, rates that divide nothing.
+/// sigrok's demo device: many pieces, and rates that are not divisors.
 #[test]
 #[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
 fn a_recording_of_sigroks_demo_device_is_the_same_in_all_of_its_formats() {
@@ -171,7 +171,7 @@ fn a_recording_of_sigroks_demo_device_is_the_same_in_all_of_its_formats() {
     assert_eq!(open(&path("others-demo-24m.sr")).timebase, Timebase::new(1, 24_000_000));
 }
 
-/// Its tables cannot hold both kinds of channels (sigrok-cli 0.7.2 ends by a memory fault), but its sessions can.
+/// Its tables cannot have both kinds of channels (sigrok-cli 0.7.2 crashes), but its sessions can.
 #[test]
 #[ignore = "asks programs of GTKWave and sigrok: cargo xtask test --only vcd"]
 fn analog_channels_of_a_session_are_left_out() {

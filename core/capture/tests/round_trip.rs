@@ -55,12 +55,12 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn dumps_are_read_as_they_were_written(recording in recording(64, 1 << 40)) {
+    fn dumps_round_trip(recording in recording(64, 1 << 40)) {
         equal(&recording.vcd(), Format::Vcd, Timebase::new(1, 1_000_000_000), &recording);
     }
 
     #[test]
-    fn tables_of_levels_are_read_as_they_were_written(recording in recording(64, 1 << 40), shift in any::<bool>()) {
+    fn tables_of_levels_round_trip(recording in recording(64, 1 << 40), shift in any::<bool>()) {
         let format = Format::SaleaeCsv;
         equal(&recording.saleae("\n"), format, Timebase::new(1, 1_000_000_000), &recording);
         equal(&recording.saleae("\r\n"), format, Timebase::new(1, 1_000_000_000), &recording);
@@ -70,7 +70,7 @@ proptest! {
     }
 
     #[test]
-    fn traces_are_read_as_they_were_written(changes in changes(36, 1 << 40)) {
+    fn traces_round_trip(changes in changes(36, 1 << 40)) {
         let mut text = writers::trace(&changes);
         let expected = read_bytes(&text).capture;
         prop_assume!(changes.iter().any(|change| change.levels > 0xff));
@@ -80,7 +80,7 @@ proptest! {
     }
 
     #[test]
-    fn samples_are_read_as_they_were_written(recording in recording(64, 30), rate in 1_u64..2_000_000_000) {
+    fn samples_round_trip(recording in recording(64, 30), rate in 1_u64..2_000_000_000) {
         let base = Timebase::new(1, rate);
         for options in writers::SAMPLES {
             equal(&recording.samples(rate, options), Format::SigrokCsv, base, &recording);
@@ -88,7 +88,7 @@ proptest! {
     }
 
     #[test]
-    fn sessions_are_read_as_they_were_written(recording in recording(64, 3000), piece in 1_usize..4000, pack in any::<bool>()) {
+    fn sessions_round_trip(recording in recording(64, 3000), piece in 1_usize..4000, pack in any::<bool>()) {
         // No more files than a session may have.
         let piece = piece.max((recording.end as usize + 1) * 8 / 60_000 + 1);
         let file = recording.session(piece, pack);
@@ -96,7 +96,7 @@ proptest! {
     }
 
     #[test]
-    fn bytes_are_read_as_they_were_written(bytes in prop::collection::vec(any::<u8>(), 1..60), gaps in prop::collection::vec(0_u64..1 << 30, 60)) {
+    fn bytes_round_trip(bytes in prop::collection::vec(any::<u8>(), 1..60), gaps in prop::collection::vec(0_u64..1 << 30, 60)) {
         for (separator, prefix) in [(" ", ""), (",", "0x"), ("; ", "0X"), ("\n", ""), ("", "")] {
             let words: Vec<String> = bytes.iter().map(|byte| format!("{prefix}{byte:02x}")).collect();
             let text = words.join(separator);
@@ -121,7 +121,7 @@ proptest! {
     }
 
     #[test]
-    fn positions_are_read_as_they_were_written(steps in prop::collection::vec((1_u64..1 << 40, any::<i64>()), 1..40)) {
+    fn positions_round_trip(steps in prop::collection::vec((1_u64..1 << 40, any::<i64>()), 1..40)) {
         let mut tick = 0;
         let positions: Vec<TimedPosition> = steps.into_iter().map(|(gap, position)| {
             tick += gap;

@@ -39,13 +39,13 @@ fn annotations_of_any_base_are_read_and_unclear_ones_are_not_guessed() {
                 "0:0:4c end 0\n{late}\n! line 3: byte 1 (the first is 0) is not hexadecimal; print all bytes with format=hex"
             ),
         ),
-        // sigrok's format=ascii prints control characters so.
+        // sigrok's format=ascii prints control characters like this.
         ("1 2 [0D]", format!("end 10\n- skipped other annotations: [0D]\n{late}\n! line 3: {text}")),
         ("H 1 2", format!("end 20\n- skipped other annotations: H\n{late}\n! line 3: {text}")),
     ] {
         assert_eq!(summary(&read_bytes(timed(texts))), format!("Annotations [RX] {expected}"), "{texts}");
     }
-    // Whoever reads may say it.
+    // The user may set the base.
     let wanted = ReadOptions { base: Some(Base::Decimal), ..ReadOptions::default() };
     let read = |text: &str| {
         read_with_options(std::io::Cursor::new(text.to_owned()), &Limits::default(), &wanted, &mut |_| true)
@@ -199,7 +199,7 @@ fn hexadecimal_counts_and_bytes_with_colons_are_distinguished() {
     };
     assert_eq!(bytes(log), [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
     assert_eq!(bytes("01:02:03:04\n05:06:07:08\n"), [1, 2, 3, 4, 5, 6, 7, 8]);
-    // No number of bytes: it may be one of them.
+    // Not a number of bytes: it may be a byte.
     assert!(read_bytes("12:00:00.5 RX [0B] 00 01\n").error.is_some());
     // Bits and decimal bytes without classes.
     let bits = "0-9 uart-1: Start bit\n10-19 uart-1: 1\n20-29 uart-1: 0\n10-99 uart-1: 200\n";
@@ -214,13 +214,13 @@ fn times_with_too_many_places_are_rounded_with_a_note() {
             "LevelsCsv 1/1000000000000000000 [STEP] 0:0 5000000000000:1 10000000000000:0 end 10000000000000\n\
              - times have too many decimal places and are rounded to the nearest 1e-18 s",
         ),
-        // 64 bits are 18 s of these: later times make them coarser.
+        // 64 bits are 18 s of these units: later times need coarser units.
         (
             "time_s,STEP\n0,0\n0.30000000000000004,1\n2000,0\n",
             "LevelsCsv 1/1000000000000000 [STEP] 0:0 300000000000000:1 2000000000000000000:0 end 2000000000000000000\n\
              - times have too many decimal places and are rounded to the nearest 1e-15 s",
         ),
-        // Changes are not put together.
+        // Changes at different times stay separate.
         (
             "time_s,STEP\n0,0\n1e-18,1\n2e-18,0\n2000,1\n",
             "LevelsCsv 1/1000000000000000000 [STEP] 0:0 1:1 2:0 end 2\n! line 5: the time “2000” does not fit into 64 bits; use times relative to the start of the recording",

@@ -13,7 +13,7 @@ impl Controller {
         journal::newest(self.eeprom.bytes(), self.slots())
     }
 
-    /// Whether memory says that the axis may move.
+    /// Whether, by the memory, the axis may move.
     pub(crate) fn is_memory_open(&self) -> bool {
         !self.writes_journal && self.newest.is_some_and(|newest| newest.entry.is_open)
     }

@@ -173,7 +173,7 @@ pub trait Sink {
     /// Receives an event in cycle `_at`.
     fn event(&mut self, _at: Instant, _event: Event) {}
 
-    /// Whether the run should return before its end; asked between cycles.
+    /// Whether the run should return before its end; checked between cycles.
     fn is_paused(&self) -> bool {
         false
     }

@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn every_name_is_seen_in_its_order_also_twice() {
+    fn names_are_read_in_order_including_duplicates() {
         let json = Json::parse(r#" { "b": [1, {"x": "]"}], "a" : null, "b": "\u0041\"" } "#).expect("JSON");
         let mut seen = String::new();
         assert!(json.members(&mut |name, value| seen += &format!("{name}={};", value.raw())));
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn half_of_a_surrogate_pair_is_no_text() {
+    fn half_a_surrogate_pair_has_no_text() {
         assert_eq!(Json::parse(r#""\u00fc""#).expect("JSON").text().as_deref(), Some("\u{fc}"));
         assert_eq!(Json::parse(r#""\ud800""#).expect("JSON").text(), None);
         assert!(!Json::parse(r#"{"\ud800": 1}"#).expect("JSON").members(&mut |_, _| {}));

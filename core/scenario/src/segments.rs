@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn every_refusal_names_its_segment_and_the_numbers() {
+    fn every_error_names_its_segment_and_numbers() {
         let rows: [(&str, &[&str]); 7] = [
             ("", &[]),
             (r#"{"segments":[{"steps":{}},{"dwell":{}}]}"#, &[]),
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn segments_survive_their_canonical_form() {
+    fn segments_round_trip_through_the_canonical_form() {
         let json = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"add_q16":-12,"direction":"negative"}},{"dwell":{"length_q16":18446744073709551615}},{"steps":{}}]}]}}}"#;
         let scenario = Scenario::from_json(json).expect("reads");
         assert_eq!(scenario.compact().to_string(), json);

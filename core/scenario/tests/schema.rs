@@ -15,7 +15,7 @@ fn the_documentation_matches_the_schema() {
         fs::write(&file, &expected).expect("docs/scenario.md can be written");
     }
     let found = fs::read_to_string(&file).expect("docs/scenario.md");
-    assert!(found == expected, "docs/scenario.md is not what the schema says; STEPSCOPE_BLESS=1 writes it");
+    assert!(found == expected, "docs/scenario.md differs from the schema; STEPSCOPE_BLESS=1 writes it");
 }
 
 /// Each field and kind, with its path of names.

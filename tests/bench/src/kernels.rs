@@ -392,7 +392,7 @@ mod tests {
             }
         }
         let [one, all] = [Kernel::Motors16, Kernel::Motors512].map(|kernel| kernels.work(kernel));
-        assert_eq!(all.units, 32 * one.units, "each hears the packets of all");
+        assert_eq!(all.units, 32 * one.units, "each receives the packets of all");
     }
 
     #[test]

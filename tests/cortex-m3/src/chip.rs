@@ -194,7 +194,7 @@ pub(crate) fn on_the_board(timer: SYST) -> Result<String, String> {
     let position = runner.machine().position(0).map(i64::from);
     let lcd = board.face.map(|_| runner.face().lcd()).unwrap_or_default();
     if !(90..=91).contains(&cut_at) || position != Some(cut_at + 60) || position != Some(board.place) {
-        return Err(format!("cut at {cut_at}, it ends at {}, and says {position:?} ({lcd})", board.place));
+        return Err(format!("cut at {cut_at}, it ends at {}, and reports {position:?} ({lcd})", board.place));
     }
     Ok(format!("cut at {cut_at}, LCD {lcd}, at worst {} cycles late", runner.lateness().worst.0))
 }

@@ -376,7 +376,7 @@ fn again(opened: &LoadedCapture) {
         of_step_times(slice::from_ref(&steps), &asked)
     };
     let Ok(Reproduction { scenario, later_cycles, greatest_error_cycles, .. }) = made else { return };
-    assert_eq!(greatest_error_cycles, 0, "asked for none");
+    assert_eq!(greatest_error_cycles, 0, "no map was requested");
     let Some(records) = Experiment::new(&scenario).ok().and_then(|experiment| run(&experiment)) else {
         return;
     };

@@ -31,7 +31,7 @@ pub(crate) async fn look(page: &Session, state: &str, wrong: &mut Vec<String>) -
         page.js::<bool>(&format!("{script}\nreturn true;"), vec![]).await?;
     }
     let Answer { rules, found } = page.js(RUN, vec![]).await.with_context(|| state.to_owned())?;
-    ensure!(rules > 12, "axe looked at {rules} rules only");
+    ensure!(rules > 12, "axe checked only {rules} rules");
     wrong.extend(found.into_iter().map(|text| format!("{state}: {text}")));
     Ok(())
 }
@@ -49,7 +49,7 @@ fn axe_finds_nothing_on_a_wide_screen_in_any_theme() -> Result<()> {
         for (state, features) in [
             ("light", json!([{ "name": "prefers-color-scheme", "value": "light" }])),
             ("dark", json!([{ "name": "prefers-color-scheme", "value": "dark" }])),
-            ("forced colours", json!([{ "name": "forced-colors", "value": "active" }])),
+            ("forced colors", json!([{ "name": "forced-colors", "value": "active" }])),
         ] {
             page.devtools("Emulation.setEmulatedMedia", json!({ "features": features })).await?;
             look(&page, state, &mut wrong).await?;

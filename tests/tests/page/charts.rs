@@ -210,7 +210,7 @@ fn a_baseline_is_drawn_and_measured_next_to_a_later_run() -> Result<()> {
         page.until("document.getElementById('compared').hidden").await?;
         let look =
             async || Ok((page.canvas("chart-speed").await?.ink("--baseline").pixels == 0).then_some(()));
-        page.eventually("the baseline's curve is gone", look).await
+        page.eventually("the baseline's curve is missing", look).await
     })
 }
 

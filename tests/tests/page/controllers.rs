@@ -16,7 +16,7 @@ const DISTANCE: &str = "controllers[0].axes[0].moves[0].cosine.distance";
 async fn added(page: &Session) -> Result<()> {
     page.open("").await?;
     page.until_digest(&Known::of("{}")?.digest).await?;
-    ensure!(!page.visible("#controller").await?, "there is one controller only");
+    ensure!(!page.visible("#controller").await?, "there is only one controller");
     page.click("[aria-label='Add controller']").await?;
     page.until_digest(&Known::digest_of(TWO, 0)?).await
 }

@@ -27,7 +27,7 @@ impl Session {
     }
 
     /// The color scheme of the system, `light` or `dark`.
-    pub(crate) async fn system_colours(&self, scheme: &str) -> Result<()> {
+    pub(crate) async fn system_colors(&self, scheme: &str) -> Result<()> {
         let features = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
         self.devtools("Emulation.setEmulatedMedia", features).await.map(drop)
     }

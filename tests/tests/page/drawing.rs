@@ -23,7 +23,7 @@ fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
         for id in ["chart-position", "chart-speed", "chart-acceleration"] {
             let canvas = page.canvas(id).await?;
             canvas.has_curve("--ideal").with_context(|| format!("{id}: {canvas:?}"))?;
-            ensure!(canvas.colours >= 3, "{id} has labels, axes and curves: {canvas:?}");
+            ensure!(canvas.colors >= 3, "{id} has labels, axes and curves: {canvas:?}");
         }
         for id in ["chart-position", "chart-speed"] {
             let canvas = page.canvas(id).await?;
@@ -34,7 +34,7 @@ fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
             ensure!(pulses.ink(ink).columns > 300.0, "the pulses have a row in {ink}: {pulses:?}");
         }
         let overview = page.canvas("overview").await?;
-        ensure!(overview.colours >= 2, "the overview is drawn: {overview:?}");
+        ensure!(overview.colors >= 2, "the overview is drawn: {overview:?}");
         page.unfold_spectrum().await?;
         let spectrum = page.canvas("spectrum-chart").await?;
         for ink in ["--ideal", "--actual"] {
@@ -58,7 +58,7 @@ fn the_page_opens_and_draws_the_default_motion() -> Result<()> {
             "{harmonics} harmonics in the table"
         );
         let note = page.text("#spectrum-note").await?;
-        ensure!(note.contains("not periodic"), "one move has no distortion, and the note says so: {note}");
+        ensure!(note.contains("not periodic"), "one move has no distortion, and the note states it: {note}");
         Ok(())
     })
 }
@@ -76,9 +76,9 @@ fn the_overview_is_drawn_when_it_is_shown_again() -> Result<()> {
         page.until_digest(&Known::of(&with_distance(800.0))?.digest).await?;
         // Blank, because nothing has been drawn since.
         page.eval::<u32>(&format!("{STRIP}.width = 300")).await?;
-        ensure!(page.canvas("overview").await?.colours < 2, "nothing is drawn out of sight");
+        ensure!(page.canvas("overview").await?.colors < 2, "nothing is drawn out of sight");
         page.eval::<String>(&format!("{STRIP}.style.height = ''")).await?;
-        page.eventually("the strip", async || Ok((page.canvas("overview").await?.colours >= 2).then_some(())))
+        page.eventually("the strip", async || Ok((page.canvas("overview").await?.colors >= 2).then_some(())))
             .await
     })
 }
@@ -135,13 +135,13 @@ fn no_request_goes_to_another_host() -> Result<()> {
             page.eval("performance.getEntriesByType('resource').map((entry) => entry.name)").await?;
         ensure!(asked.iter().any(|name| name.ends_with(".wasm")), "the engine is not among {asked:?}");
         for name in &asked {
-            ensure!(name.starts_with(&format!("{origin}/")) || name.starts_with("data:"), "asked for {name}");
+            ensure!(name.starts_with(&format!("{origin}/")) || name.starts_with("data:"), "requested {name}");
         }
         let links: Vec<Value> = page
             .eval("[...document.querySelectorAll('[src], link[href]')].map((node) => node.src || node.href)")
             .await?;
         for link in links.iter().filter_map(Value::as_str) {
-            ensure!(link.starts_with(&origin) || link.starts_with("data:"), "the page holds {link}");
+            ensure!(link.starts_with(&origin) || link.starts_with("data:"), "the page has {link}");
         }
         Ok(())
     })

@@ -127,7 +127,7 @@ fn an_invalid_value_shows_range_and_remedy_and_the_last_result() -> Result<()> {
                 );
                 ensure!(shown.described.contains(&message), "{path} {typed}: not read to whom cannot see");
             }
-            ensure!(!shown.error.is_empty(), "{path} {typed}: nothing beside the field");
+            ensure!(!shown.error.is_empty(), "{path} {typed}: no message at the field");
             let header = page.shown().await?;
             ensure!(header.digest == known.digest && header.stale, "{path} {typed}: {header:?}");
             ensure!(page.eval::<bool>("document.getElementById('views').classList.contains('dim')").await?);
@@ -173,7 +173,7 @@ fn all_problems_are_shown_and_each_disappears_when_fixed() -> Result<()> {
             let told = wrong[index..].iter().filter(|(_, _, _, says)| listed.contains(says)).count();
             ensure!(
                 told >= wrong.len().min(index + 3) - index,
-                "{told} are told, and where they are: {listed}"
+                "{told} problems are listed with their locations: {listed}"
             );
             page.fill(mended, good).await?;
             let mended = page.find(&field(mended)).await?;

@@ -18,7 +18,7 @@ fn a_browser_without_webassembly_gets_a_message() -> Result<()> {
         let sentence = page.text("#no-wasm").await?;
         ensure!(sentence.contains("WebAssembly") && sentence.ends_with('.'), "{sentence}");
         let status = page.text("#status").await?;
-        ensure!(!status.contains("loading"), "it still says `{status}`");
+        ensure!(!status.contains("loading"), "the status is still `{status}`");
         Ok(())
     })
 }
@@ -119,7 +119,7 @@ fn a_canceled_run_stops_completely() -> Result<()> {
              return window.heard - before; })()";
         // One message may still arrive.
         ensure!(page.eval::<u32>(heard).await? <= 1, "it still runs");
-        assert_eq!(page.eval::<u32>("window.workers").await?, 1, "it heard the cancel");
+        assert_eq!(page.eval::<u32>("window.workers").await?, 1, "it received the cancel");
         page.click("#undo").await?;
         page.until_digest(&Known::of("{}")?.digest).await
     })

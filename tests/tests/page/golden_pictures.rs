@@ -60,7 +60,7 @@ impl Picture {
         let clear = each.chunks(4).filter(|pixel| pixel.iter().any(|&part| part >= CLEAR)).count();
         let clear = clear as f64 / f64::from(self.width * self.height);
         (mean > MAX_MEAN || clear > MAX_CLEAR).then(|| {
-            format!("colours differ by {mean:.3} in the mean (at most {MAX_MEAN}), {:.3} % of the pixels clearly (at most {:.3} %)",
+            format!("colors differ by {mean:.3} in the mean (at most {MAX_MEAN}), {:.3} % of the pixels clearly (at most {:.3} %)",
                 100.0 * clear, 100.0 * MAX_CLEAR)
         })
     }
@@ -133,7 +133,7 @@ fn pictures_of_curves_and_pulses_are_unchanged() -> Result<()> {
             [("wide-light", "light", 1440, 860), ("narrow-dark", "dark", 390, 340)]
         {
             page.screen(width, 900).await?;
-            page.system_colours(scheme).await?;
+            page.system_colors(scheme).await?;
             page.open("").await?;
             page.preset(preset.id).await?;
             page.until_digest(&known.digest).await?;

@@ -18,7 +18,7 @@ async fn refused(page: &Session, what: &str, fragment: &str, says: &str) -> Resu
     let message = page.text("#link-message").await?;
     let core = refusal(fragment)?;
     ensure!(message.contains(&core), "{what}: `{message}`, wanted `{core}`");
-    ensure!(message.contains(says), "{what}: `{message}` does not say `{says}`");
+    ensure!(message.contains(says), "{what}: `{message}` does not contain `{says}`");
     Ok(())
 }
 
@@ -84,7 +84,7 @@ fn a_link_with_too_much_work_waits_for_confirmation() -> Result<()> {
         page.open(&format!("#{}", known.link)).await?;
         ensure!(page.visible("#run-anyway").await?, "there is no button to run it");
         let word = page.text("#budget").await?;
-        ensure!(word.contains("edges") && word.contains("Not run"), "the price is told: {word}");
+        ensure!(word.contains("edges") && word.contains("Not run"), "the cost is shown: {word}");
         let distance = page.field("source.motion.axes[0].moves[0].cosine.distance").await?;
         assert_eq!(distance.value, "2200000");
         // A run would have been requested by now; one more request gets its reply after that.
@@ -96,7 +96,10 @@ fn a_link_with_too_much_work_waits_for_confirmation() -> Result<()> {
         page.press("#link-text", "\u{e00c}").await?;
         page.ready().await?;
         let shown = page.shown().await?;
-        ensure!(shown.digest != known.digest && shown.digest.len() != 16, "it ran unasked: {shown:?}");
+        ensure!(
+            shown.digest != known.digest && shown.digest.len() != 16,
+            "it ran without a confirmation: {shown:?}"
+        );
 
         page.click("#run-anyway").await?;
         page.until_digest(&known.digest).await?;
@@ -118,10 +121,7 @@ fn a_long_run_shows_its_progress_and_can_be_canceled() -> Result<()> {
         page.click("#cancel").await?;
         page.until("document.getElementById('progress').hidden").await?;
         page.ready().await?;
-        ensure!(
-            page.text("#engine-message").await?.contains("canceled"),
-            "nothing says that it was cancelled"
-        );
+        ensure!(page.text("#engine-message").await?.contains("canceled"), "no message reports the cancel");
         assert_ne!(page.shown().await?.digest, known.digest);
         page.click("#undo").await?;
         page.until_digest(&Known::of("{}")?.digest).await

@@ -45,7 +45,7 @@ const FOUND: &str = "
         'inner size': [innerWidth, innerHeight],
         ratio: devicePixelRatio,
         dark: matchMedia('(prefers-color-scheme: dark)').matches,
-        'forced colours': matchMedia('(forced-colors: active)').matches,
+        'forced colors': matchMedia('(forced-colors: active)').matches,
         still: matchMedia('(prefers-reduced-motion: reduce)').matches,
         print: matchMedia('print').matches,
         online: navigator.onLine,
@@ -125,7 +125,7 @@ async fn leave(page: &Session) -> Result<()> {
         ("script", json!("behind")),
         ("ratio", json!(2)),
         ("dark", json!(true)),
-        ("forced colours", json!(true)),
+        ("forced colors", json!(true)),
         ("still", json!(true)),
         ("print", json!(true)),
         ("online", json!(false)),
@@ -149,7 +149,7 @@ fn a_visitor_finds_nothing_of_the_previous_visitor() -> Result<()> {
         let (said, next) = page.bench.next_in_browser().await?;
         ensure!(
             said.len() == 1 && said[0].contains("left behind"),
-            "the console's word is the first one's: {said:?}"
+            "the console's message is that of the first user: {said:?}"
         );
         ensure!(next.client.windows().await?.len() == 2, "a window is left open");
         assert_eq!(found(&next).await?, first);

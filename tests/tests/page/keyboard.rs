@@ -43,8 +43,8 @@ const FOCUS: &str = "
     let ground = { r: 255, g: 255, b: 255, a: 1 };
     // The outline is outside of the element, on the background behind it.
     for (let at = node.parentElement; at; at = at.parentElement) {
-        const colour = rgba(getComputedStyle(at).backgroundColor);
-        if (colour.a === 1) { ground = colour; break; }
+        const color = rgba(getComputedStyle(at).backgroundColor);
+        if (color.a === 1) { ground = color; break; }
     }
     const style = getComputedStyle(node);
     const [one, other] = [light(rgba(style.outlineColor)), light(ground)];

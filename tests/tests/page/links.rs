@@ -110,7 +110,7 @@ fn a_link_pasted_into_the_address_opens_and_can_be_undone() -> Result<()> {
         page.until_digest(&shared.digest).await?;
         ensure!(
             page.text("#link-message").await?.contains(&shared.scenario.title),
-            "the link's name is told"
+            "the link's name is shown"
         );
 
         page.click("#undo").await?;

@@ -70,7 +70,7 @@ fn ports_are_searched_only_with_the_dialog_open() -> Result<()> {
         let known = Known::of(FRAMED)?;
         open_with(&page, &format!("#{}", known.link), "serve", FRAMED).await?;
         page.until_digest(&known.digest).await?;
-        ensure!(page.eval::<u32>("peer.sought").await? == 0, "ports are looked for before anybody asks");
+        ensure!(page.eval::<u32>("peer.sought").await? == 0, "ports are searched before the dialog opens");
         page.click("#device").await?;
         page.until("peer.sought > 0").await?;
         page.until(&format!("{ABOUT}.includes(' baud')")).await?;

@@ -36,7 +36,7 @@ fn replies_are_listed_during_a_stream_and_stop_is_visible() -> Result<()> {
             start_long(&page).await?;
             let at = format!("{width} x {height}");
             ensure!(!page.eval::<bool>(MODAL).await?, "{at}: the page cannot be used");
-            ensure!(page.eval::<bool>(STOP_IN_SIGHT).await?, "{at}: STOP is not in sight");
+            ensure!(page.eval::<bool>(STOP_IN_SIGHT).await?, "{at}: STOP is not visible");
             ensure!(page.visible("#view-packets .live-replies").await?, "{at}");
             ensure!(!page.visible("#packets").await?, "{at}: both tables are shown");
             let rows: u32 = page.eval(ROWS).await?;

@@ -67,7 +67,7 @@ fn selecting_bytes_highlights_their_packet_in_all_views() -> Result<()> {
         point(&page, &known, BYTES, middle(0), false).await?;
         until_reads(&page, "bytes: 87, sent as 83").await?;
         for overlay in ["charts-cursor", "pulses-cursor"] {
-            let highlighted = page.canvas(overlay).await?.colours;
+            let highlighted = page.canvas(overlay).await?.colors;
             ensure!(highlighted > 0, "{overlay} shows what is pointed at");
         }
         point(&page, &known, FIELDS, middle(0), false).await?;

@@ -191,7 +191,7 @@ fn distortion_follows_the_bandwidth_of_the_sensor() -> Result<()> {
         let wanted = 100.0 * filtered(&ideal).expect("a ratio");
         let text =
             said.rsplit_once("ideal ").map(|(_, rest)| rest.split(' ').next().unwrap_or("")).unwrap_or("");
-        ensure!((text.parse::<f64>()? - wanted).abs() < 1e-3 * wanted, "{said} is not {wanted}");
+        ensure!((text.parse::<f64>()? - wanted).abs() < 1e-3 * wanted, "{said} instead of {wanted}");
         // It is drawn, too: the filtered part of each harmonic.
         let drawn = "document.getElementById('spectrum-chart').toDataURL()";
         let unfiltered: String = page.eval(drawn).await?;

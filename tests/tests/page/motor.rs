@@ -200,10 +200,7 @@ fn an_expanded_list_covers_nothing_and_closes_for_a_motor() -> Result<()> {
                 page.until(&format!("document.querySelector('{fold}').open")).await?;
                 let room =
                     format!("document.querySelector('{fold} > .record-pane > :first-child').clientHeight");
-                ensure!(
-                    page.eval::<f64>(&room).await? > 20.0,
-                    "{fold} holds nothing to be seen at {width} px"
-                );
+                ensure!(page.eval::<f64>(&room).await? > 20.0, "{fold} has no visible content at {width} px");
                 page.click(&format!("{fold} > summary")).await?;
                 page.until(&format!("!document.querySelector('{fold}').open")).await?;
             }

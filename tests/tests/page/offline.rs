@@ -94,7 +94,7 @@ fn a_newer_version_is_offered_and_keeps_the_work() -> Result<()> {
         assert_eq!(page.text("h1").await?, "Stepscope", "the version that was there answers");
         page.js::<()>("window.stays = true;", vec![]).await?;
         page.ready().await?;
-        ensure!(page.eval::<bool>("window.stays === true").await?, "it loaded anew by itself");
+        ensure!(page.eval::<bool>("window.stays === true").await?, "it reloaded without a request");
 
         page.click("#reload").await?;
         page.until("document.querySelector('h1')?.textContent === 'Newer'").await?;

@@ -16,7 +16,7 @@ pub(crate) struct Canvas {
     /// Device pixels.
     pub(crate) height: f64,
     /// Number of clearly different colors, without transparent pixels.
-    pub(crate) colours: u32,
+    pub(crate) colors: u32,
     /// A hash of all pixels; equal pictures have the same.
     pub(crate) hash: String,
     /// By the name of the color's custom property.
@@ -90,13 +90,13 @@ const READ: &str = "
         const hex = parseInt(style.getPropertyValue(name).trim().slice(1), 16);
         return [name, { rgb: [hex >> 16, hex >> 8 & 255, hex & 255], pixels: 0, columns: new Set(), top: Infinity, low: -1 }];
     }));
-    const colours = new Set();
+    const colors = new Set();
     let hash = 0x811c9dc5;
     for (let at = 0; at < data.length; at += 4) {
         const [r, g, b, a] = [data[at], data[at + 1], data[at + 2], data[at + 3]];
         hash = Math.imul(hash ^ (r << 24 | g << 16 | b << 8 | a), 0x01000193) ^ hash >>> 15;
         if (a < 100) continue;
-        colours.add(r >> 5 << 10 | g >> 5 << 5 | b >> 5);
+        colors.add(r >> 5 << 10 | g >> 5 << 5 | b >> 5);
         const x = at / 4 % width;
         if (x < labels) continue;
         for (const name of inks) {
@@ -109,7 +109,7 @@ const READ: &str = "
             ink.low = Math.max(ink.low, y);
         }
     }
-    return { width, height, colours: colours.size, hash: String(hash >>> 0), inks: Object.fromEntries(inks.map((name) => {
+    return { width, height, colors: colors.size, hash: String(hash >>> 0), inks: Object.fromEntries(inks.map((name) => {
         const { pixels, columns, top, low } = found[name];
         return [name, { pixels, columns: columns.size, rows: low < 0 ? 0 : low - top + 1 }];
     })) };";

@@ -121,7 +121,7 @@ impl Program {
                 Err(mpsc::RecvTimeoutError::Disconnected) => {
                     bail!("ended without a word on where it listens: {}", self.heard().join("\n"))
                 }
-                Err(mpsc::RecvTimeoutError::Timeout) => bail!("says nothing on where it listens"),
+                Err(mpsc::RecvTimeoutError::Timeout) => bail!("does not report its address"),
             }
         }
     }

@@ -474,7 +474,7 @@ fn a_selected_part_keeps_the_figures_of_the_whole_recording() -> Result<()> {
         type_into(&page, "Show up to", "150 ms").await?;
         says(&page, "Shown: 100 ms to 150 ms of 203").await?;
         says(&page, "200 steps, 200 right and 0 left").await?;
-        ensure!(!page.visible("#recording-compare").await?, "a part is not laid beside anything");
+        ensure!(!page.visible("#recording-compare").await?, "a part is not compared with anything");
         type_into(&page, "Show up to", "x").await?;
         page.until(
             "document.getElementById('recording-show-up-to-error').innerText.includes('not a number')",
@@ -546,7 +546,7 @@ fn the_dialog_works_with_keys_and_on_narrow_screens() -> Result<()> {
         page.until(READY).await?;
         let mut wrong = Vec::new();
         for scheme in ["dark", "light"] {
-            page.system_colours(scheme).await?;
+            page.system_colors(scheme).await?;
             axe::look(&page, scheme, &mut wrong).await?;
         }
         axe::none(&wrong)?;

@@ -89,7 +89,7 @@ fn a_recording_survives_a_reload_with_and_without_a_link() -> Result<()> {
         reload(&page).await?;
         page.until_digest(&digest(&long)).await?;
         assert_eq!(page.field("title").await?.value, "recorded: long.csv");
-        assert_eq!(page.text("#link-message").await?, "", "nothing is to be said");
+        assert_eq!(page.text("#link-message").await?, "", "there is no message");
         page.until(
             "document.getElementById('status').textContent.replace(/\\u202f/g, '').startsWith('8000 edges')",
         )
@@ -108,7 +108,7 @@ fn a_recording_survives_edits_reloads_and_a_new_tab() -> Result<()> {
         let text = wandering(100).replacen(",0,1\n0.0", ",0,1\n0.009000000,1,1\n0.009500000,0,1\n0.0", 1);
         let opened = open(&page, "mine.csv", &text).await?;
         let (recorded, made) = (digest(&opened), model(&opened, "mine.csv")?);
-        ensure!(recorded != made, "what is shown tells which it is");
+        ensure!(recorded != made, "the label shows which one is visible");
         // The page was left before the link was in the address.
         assert_eq!(page.eval::<String>("location.hash").await?, "");
         reload(&page).await?;
@@ -172,7 +172,7 @@ fn storage_failures_are_reported_once_and_show_the_model() -> Result<()> {
             reload(&page).await?;
             page.until_digest(&model(&opened, "mine.csv")?).await?;
             sleep(Duration::from_millis(300)).await;
-            assert_eq!(page.text("#link-message").await?, "", "{work}: it is said once");
+            assert_eq!(page.text("#link-message").await?, "", "{work}: the message is shown once");
         }
         // Storage that fails from the start.
         page.eval::<bool>("(indexedDB.constructor.prototype.open = () => { throw new DOMException('no room', 'QuotaExceededError'); }, true)").await?;

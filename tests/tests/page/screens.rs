@@ -106,8 +106,8 @@ struct Contrast {
 
 const CONTRAST: &str = "
     const rgb = (text) => text.match(/[\\d.]+/g).slice(0, 3).map(Number);
-    const light = (colour) => {
-        const [r, g, b] = colour.map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
+    const light = (color) => {
+        const [r, g, b] = color.map((c) => (c / 255 <= 0.04045 ? c / 255 / 12.92 : ((c / 255 + 0.055) / 1.055) ** 2.4));
         return 0.2126 * r + 0.7152 * g + 0.0722 * b;
     };
     const ratio = (a, b) => (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
@@ -141,11 +141,11 @@ async fn contrasts(page: &Session, dark: bool) -> Result<()> {
 #[test]
 fn both_themes_follow_the_system_and_keep_the_contrast_of_every_curve() -> Result<()> {
     in_browser(|page| async move {
-        page.system_colours("dark").await?;
+        page.system_colors("dark").await?;
         page.open("").await?;
         page.picture("dark").await?;
         contrasts(&page, true).await?;
-        page.system_colours("light").await?;
+        page.system_colors("light").await?;
         contrasts(&page, false).await?;
         assert_eq!(page.shown().await?.digest, Known::of("{}")?.digest);
         Ok(())
@@ -155,7 +155,7 @@ fn both_themes_follow_the_system_and_keep_the_contrast_of_every_curve() -> Resul
 #[test]
 fn the_selected_theme_overrides_the_system_and_is_saved() -> Result<()> {
     in_browser(|page| async move {
-        page.system_colours("light").await?;
+        page.system_colors("light").await?;
         page.open("").await?;
         contrasts(&page, false).await?;
         page.click("#more").await?;

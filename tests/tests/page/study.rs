@@ -90,7 +90,7 @@ fn the_study_opens_and_closes_by_button_key_and_link() -> Result<()> {
         page.click("#study").await?;
         page.until("document.activeElement.id === 'study-tab-compare'").await?;
         ensure!(page.visible("#view-study").await? && !page.visible("#view-motion").await?);
-        ensure!(page.visible("#fields").await?, "the form stays beside it");
+        ensure!(page.visible("#fields").await?, "the form stays next to it");
         page.press("#study-tab-compare", &LEFT.to_string()).await?;
         page.until_equal("document.activeElement.id", &json!("study-tab-motor")).await?;
         page.press("#study-tab-motor", &format!("{LEFT}")).await?;
@@ -481,9 +481,9 @@ fn the_comparison_matches_the_core_and_a_shape_can_be_applied() -> Result<()> {
         let reach = "(() => {
             const canvas = document.querySelector(\"canvas[aria-label='Acceleration, Cosine, exact']\");
             const { data, width, height } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-            const coloured = (y) => Array.from({ length: width }, (_, x) => 4 * (y * width + x)).some((at) =>
+            const colored = (y) => Array.from({ length: width }, (_, x) => 4 * (y * width + x)).some((at) =>
                 data[at + 3] > 200 && Math.max(...data.slice(at, at + 3)) - Math.min(...data.slice(at, at + 3)) > 60);
-            const rows = Array.from({ length: height }, (_, y) => y).filter(coloured);
+            const rows = Array.from({ length: height }, (_, y) => y).filter(colored);
             return (rows.at(-1) - rows[0]) / height; })()";
         let reach: f64 = page.eval(reach).await?;
         ensure!(reach > 0.3, "the acceleration of a cosine reaches over {reach} of its chart");

@@ -95,7 +95,7 @@ fn a_selected_packet_is_shown_in_pulses_and_curves() -> Result<()> {
 
 async fn redrawn(page: &Session, id: &str, before: &str) -> Result<()> {
     let look = async || Ok((page.canvas(id).await?.hash != before).then_some(()));
-    page.eventually(&format!("{id} drawn anew"), look).await
+    page.eventually(&format!("{id} was redrawn"), look).await
 }
 
 /// Position of an element in the window, in CSS pixels.

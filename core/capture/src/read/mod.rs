@@ -135,7 +135,7 @@ mod tests {
         let bytes = "55 AA\n01 xx\n";
         let reading = read(std::io::Cursor::new(bytes), &Limits::default(), &mut |_| true);
         assert_eq!((reading.capture.bytes.len(), reading.error.map(|error| error.line)), (2, Some(2)));
-        let cancelled = read(std::io::Cursor::new("55 AA\n"), &Limits { max_rows: 1000 }, &mut |_| false);
-        assert_eq!(cancelled.error.map(|error| error.message).as_deref(), Some(ReadError::CANCELLED));
+        let canceled = read(std::io::Cursor::new("55 AA\n"), &Limits { max_rows: 1000 }, &mut |_| false);
+        assert_eq!(canceled.error.map(|error| error.message).as_deref(), Some(ReadError::CANCELED));
     }
 }

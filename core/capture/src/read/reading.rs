@@ -35,7 +35,7 @@ pub struct ReadError {
 
 impl ReadError {
     /// The text of `message` after `watch` has canceled reading.
-    pub const CANCELLED: &str = "cancelled";
+    pub const CANCELED: &str = "canceled";
 
     pub(super) const fn of_file(message: String) -> Self {
         Self { line: 0, message }

@@ -123,7 +123,7 @@ impl<'w, R: BufRead> Source<'w, R> {
 
     /// A stop by `watch` belongs to no line.
     fn error(&self, message: String, line: u64) -> ReadError {
-        ReadError { line: if message == ReadError::CANCELLED { 0 } else { line }, message }
+        ReadError { line: if message == ReadError::CANCELED { 0 } else { line }, message }
     }
 
     fn fill(&mut self) -> Result<bool, String> {
@@ -154,7 +154,7 @@ impl<'w, R: BufRead> Source<'w, R> {
         {
             self.bytes_reported = self.bytes_read;
             if !(self.watch)(self.bytes_read) {
-                return Err(ReadError::CANCELLED.into());
+                return Err(ReadError::CANCELED.into());
             }
         }
         match self.failed.take_if(|_| is_end) {

@@ -1,4 +1,4 @@
-//! Recordings as the programs of others write them.
+//! Recordings in the formats of other programs.
 #![allow(dead_code, reason = "each test uses its part of it")]
 
 use flate2::{Compression, write::DeflateEncoder};
@@ -42,7 +42,7 @@ impl Levels {
         levels >> bit & 1
     }
 
-    /// By another program's writer: crate `vcd`.
+    /// By an independent writer: crate `vcd`.
     pub(crate) fn vcd(&self) -> Vec<u8> {
         let mut file = Vec::new();
         let mut writer = vcd::Writer::new(&mut file);
@@ -137,7 +137,7 @@ impl Levels {
         text.into_bytes()
     }
 
-    /// A session of sigrok whose samples stand in pieces of `piece` bytes.
+    /// A session of sigrok, with the samples in pieces of `piece` bytes.
     pub(crate) fn session(&self, piece: usize, pack: bool) -> Vec<u8> {
         let unit = self.names.len().div_ceil(8);
         let mut metadata = format!(

@@ -1,4 +1,4 @@
-//! Power cuts and memory (G2, G7): what is written when, what a cut leaves, and the position after it.
+//! Power cuts and memory (G2, G7): when records are written, the memory after a cut, and the position after it.
 
 use crate::{
     bench::{self, level, presses, run, small},

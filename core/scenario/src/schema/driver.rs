@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn the_canonical_form_leaves_out_what_is_not_asked_for() {
+    fn the_canonical_form_omits_defaults() {
         for (json, expected) in [
             (r#"{"driver_timing":null}"#, "{}"),
             (r#"{"driver_timing":{"preset":"tmc2209"}}"#, r#"{"driver_timing":{"preset":"tmc2209"}}"#),

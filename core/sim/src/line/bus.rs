@@ -15,7 +15,7 @@ use stepscope_peripheral::{device::Device, units::Instant, wire::Line};
 pub(crate) struct Bus {
     line: Line,
     host: Option<FramedHost>,
-    /// Invariant: one at least.
+    /// Invariant: at least one.
     nodes: Vec<Node>,
     /// The current window: its first cycle and the first one after it. Invariant: `start <= until`; both only rise.
     start: Instant,

@@ -265,7 +265,7 @@ mod tests {
         found
     }
 
-    /// Hears the reply of a device to the frame that it was sent.
+    /// Receives the reply of a device to its last frame.
     fn deliver(
         host: &mut Conversation,
         device: &mut Session,
@@ -340,7 +340,7 @@ mod tests {
         let mut twin = Twin::new(&scenario).expect("it has no problems");
 
         let now = host.deadline();
-        let opening = host.poll(now).expect("it asks how the device is");
+        let opening = host.poll(now).expect("it requests the status");
         let known = *host.known().next().expect("there is one controller").1;
         twin.send(&opening, now, (experiment.config().channels(), &known));
         assert!(twin.answer().is_some_and(|answer| answer.reply.result.is_ok()));

@@ -138,7 +138,7 @@ impl<'a> SampleStream<'a> {
             return Ok(());
         }
         self.unreported_bytes = 0;
-        if (self.progress)(self.packed_bytes) { Ok(()) } else { Err(ReadError::CANCELLED.into()) }
+        if (self.progress)(self.packed_bytes) { Ok(()) } else { Err(ReadError::CANCELED.into()) }
     }
 
     pub(super) fn finish(self) -> Result<(), String> {

@@ -227,7 +227,7 @@ fn a_working_rate_limits_in_addition_to_torque() {
     assert_eq!(machine(r#"{"load_torque_mn_m":300}"#).max_rate(), Some(0.0));
 }
 
-/// f_s = 19200 gives 0.2333 s, of which the move of 0.4 s has room for 0.2 s.
+/// f_s = 19200 gives 0.2333 s, of which 0.2 s fit into the move of 0.4 s.
 #[test]
 fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
     let ramps = |motor: &str, steps: i64, duration_s: f64| {
@@ -248,7 +248,7 @@ fn song_2021s_longest_ramp_comes_out_of_its_working_rate() {
     close(found.enough_s.unwrap().1, 0.066_666_667, 1e-7);
     let found = ramps(r#"{"working_rate_hz":15999}"#, 6400, 0.4);
     assert_eq!((found.longest_s, found.too_fast, found.enough_s), (None, true, None));
-    // A load that asks for more than there is at every ramp.
+    // A load that needs more torque than available with every ramp.
     assert_eq!(ramps(r#"{"load_torque_mn_m":283}"#, 3200, 0.4).enough_s, None);
 }
 

@@ -1,4 +1,4 @@
-//! A host and a controller with someone between them: every fault of one frame, one after the other.
+//! A framed host and a controller with faults between them: every single fault of a frame, one after another.
 
 use super::*;
 use alloc::{string::ToString, sync::Arc};
@@ -13,13 +13,13 @@ use stepscope_peripheral::{
 };
 use stepscope_scenario::Line as LineSettings;
 
-/// 11 cycles a bit.
+/// 11 cycles per bit.
 const CLOCK_HZ: u32 = 1100;
 const BAUD: u32 = 100;
 /// Ticks of two channels; the last one has no steps.
 const ORDERS: &[u8] = &[0x81, 2, 0x83, 4, 0x82, 1, 0x80, 0];
 
-/// The ticks that begin.
+/// The ticks that began.
 #[derive(Default)]
 struct Executed(Vec<[u8; MAX_CHANNELS]>);
 
@@ -33,12 +33,12 @@ impl Sink for Executed {
     }
 }
 
-/// What reaches the line of one frame, and whether the host crashes in it.
+/// The bytes of a frame that reach the line, and whether the host crashes during the frame.
 type CorruptedSend = (Vec<u8>, bool);
 
-/// Runs the job with `spoil` between host and line, which is given the number of each frame. Gives
-/// the executed orders, where the host ended, what it counted, and the bytes of each frame as it was
-/// meant.
+/// Runs the job with `spoil` between host and line; it gets the number of each frame. Returns the
+/// executed commands, the host's final state, its counters, and the unchanged bytes of each
+/// frame.
 fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progress, Counts, Vec<Vec<u8>>) {
     let bus = Bus { channels: 2, slots: 4, step_period_cycles: 100, self_test_cycles: 5, ..Bus::default() };
     let line = LineSettings { baud: BAUD, protocol: Protocol::Framed, ..LineSettings::default() };
@@ -77,7 +77,7 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
     panic!("the host never ends");
 }
 
-/// Every tick was executed once, and the host knows.
+/// Checks that each tick was executed once, and that the host has confirmed it.
 fn check(what: &str, spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> Counts {
     let (executed, progress, counts, _) = run(spoil);
     assert_eq!((executed.as_slice(), progress), (ORDERS, Progress::Done), "{what}");
@@ -100,7 +100,7 @@ fn each_byte(mut each: impl FnMut(usize, usize)) {
 }
 
 #[test]
-fn a_byte_that_is_lost_costs_a_repetition_and_no_step() {
+fn a_lost_byte_causes_a_repetition_and_loses_no_step() {
     let lengths: Vec<usize> = frames().iter().map(Vec::len).collect();
     each_byte(|frame, byte| {
         let counts = check(&alloc::format!("byte {byte} of frame {frame}"), |index, bytes| {
@@ -110,15 +110,15 @@ fn a_byte_that_is_lost_costs_a_repetition_and_no_step() {
             }
             (bytes, false)
         });
-        // Without its delimiter a frame is taken when its repetition begins; the answer to it and the
-        // repetition meet, and only the next one is heard.
+        // Without its delimiter a frame is executed when its repetition begins. Its reply collides with the
+        // repetition, and only the next reply is received.
         let is_mark = byte + 1 == lengths[frame];
         assert_eq!(counts.repeated, if is_mark { 2 } else { 1 }, "byte {byte} of frame {frame}");
     });
 }
 
 #[test]
-fn a_byte_that_comes_twice_costs_no_step() {
+fn a_duplicated_byte_loses_no_step() {
     each_byte(|frame, byte| {
         check(&alloc::format!("byte {byte} of frame {frame}"), |index, bytes| {
             let mut bytes = bytes.to_vec();
@@ -131,7 +131,7 @@ fn a_byte_that_comes_twice_costs_no_step() {
 }
 
 #[test]
-fn a_bit_that_is_turned_over_costs_a_repetition_and_no_step() {
+fn a_flipped_bit_causes_a_repetition_and_loses_no_step() {
     each_byte(|frame, byte| {
         for bit in 0..8 {
             let counts =
@@ -162,8 +162,8 @@ fn a_crashed_host_continues_with_the_next_tick() {
 }
 
 #[test]
-fn what_is_left_of_each_frame_may_be_any_of_its_bytes_twice_over() {
-    // Two faults in a row: a frame without its delimiter, and in its repetition each byte lost.
+fn two_faults_in_a_row_lose_no_step() {
+    // Two faults in a row: a frame without its delimiter, and a lost byte in its repetition.
     each_byte(|frame, byte| {
         check(&alloc::format!("byte {byte} of the repetition of frame {frame}"), |index, bytes| {
             let mut bytes = bytes.to_vec();
@@ -179,7 +179,7 @@ fn what_is_left_of_each_frame_may_be_any_of_its_bytes_twice_over() {
 }
 
 #[test]
-fn a_late_answer_to_the_frame_before_acknowledges_nothing() {
+fn a_late_reply_to_the_previous_frame_acknowledges_nothing() {
     for (expected_seq, acknowledged) in [(7, 0), (8, 2)] {
         let job =
             Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: ORDERS.into() };
@@ -208,7 +208,7 @@ fn a_controller_without_replies_executes_what_it_receives() {
     }
 }
 
-/// A controller of two channels that does at once what it is told.
+/// A controller of two channels that executes each command immediately.
 struct Reported {
     seq: u8,
     ticks_done: u32,
@@ -216,8 +216,8 @@ struct Reported {
     state: State,
 }
 
-/// Runs the job with a controller that answers at once, but for what `falsify` makes of it: its answer, or silence. Gives
-/// the kinds that were asked, and where the host ended.
+/// Runs the job with a controller that replies immediately; `falsify` may change or drop a reply. Returns
+/// the requested kinds, and the host's final state.
 fn converse(
     falsify: impl FnMut(&mut Conversation, usize, Kind, &mut Reported) -> Option<Result<Kind, Reason>>,
 ) -> (Vec<Kind>, Progress, Known) {
@@ -226,7 +226,7 @@ fn converse(
     converse_with(reported, false, falsify)
 }
 
-/// The same with a controller that has run before, and on request with an opening tick.
+/// The same with a controller that has run before, and optionally with an opening tick.
 fn converse_with(
     mut reported: Reported,
     opening_tick: bool,
@@ -287,19 +287,19 @@ fn converse_with(
 }
 
 #[test]
-fn positions_are_held_against_the_sums_of_the_ticks_from_where_the_controller_began() {
+fn positions_are_compared_with_the_sums_of_the_ticks() {
     use Kind::{Positions, Status, Stop, Ticks};
     let whole = [Status, Positions, Ticks, Status, Positions];
     let (asked, progress, known) = converse(|_, _, kind, _| Some(Ok(kind)));
     assert_eq!((asked.as_slice(), progress), (&whole[..], Progress::Done));
-    // 1 + 3 + 2 to the right; 2, 4 and 1 to the left, through the end of 32 bits.
+    // 1 + 3 + 2 steps right; 2, 4 and 1 steps left, wrapping at 32 bits.
     assert_eq!(known.positions.expect("told").as_slice(), [3, i32::MAX - 7]);
     assert_eq!(
         (known.opening_positions.expect("told").as_slice(), known.ticks_done()),
         (&[-3, i32::MAX][..], Some(4))
     );
 
-    // One step more on the second channel, at the end.
+    // One additional step on the second channel, at the end.
     let (_, progress, _) = converse(|_, index, kind, reported| {
         reported.positions[1] += i32::from(index == 4);
         Some(Ok(kind))
@@ -309,7 +309,7 @@ fn positions_are_held_against_the_sums_of_the_ticks_from_where_the_controller_be
     assert_eq!(progress, Progress::GivenUp(displaced));
     assert_eq!(displaced.to_string(), "after 4 ticks channel 1 is at 2147483641 instead of 2147483640");
 
-    // Another device than the ticks are for gets none.
+    // A device with other channels than the ticks gets none.
     let (asked, progress, _) = converse(|_, _, kind, reported| {
         reported.positions = alloc::vec![0; 3];
         Some(Ok(kind))
@@ -317,20 +317,20 @@ fn positions_are_held_against_the_sums_of_the_ticks_from_where_the_controller_be
     let other = GivenUp::OtherChannels { expected: 2, reported: 3 };
     assert_eq!((asked.as_slice(), progress), (&[Status, Positions][..], Progress::GivenUp(other)));
 
-    // One that does not know POSITIONS is asked once, and counted.
+    // A controller without POSITIONS gets one request, and only its ticks are confirmed.
     let (asked, progress, known) =
         converse(|_, _, kind, _| Some(if kind == Positions { Err(Reason::UnknownKind) } else { Ok(kind) }));
     assert_eq!((asked.as_slice(), progress), (&[Status, Positions, Ticks, Status][..], Progress::Counted));
     assert!(known.hides_positions && known.positions.is_none());
 
-    // One that was reset, or is driven by another host too.
+    // A controller that was reset, or has another host, too.
     let (_, progress, _) = converse(|_, index, kind, reported| {
         reported.ticks_done += u32::from(index == 3);
         Some(Ok(kind))
     });
     assert_eq!(progress, Progress::GivenUp(GivenUp::OtherTicks { done: 5, commanded: 4 }));
 
-    // Somebody moves it while it is looked at: it is opened once more.
+    // Another host moves it during the opening: the opening is repeated.
     let (asked, progress, _) = converse(|_, index, kind, reported| {
         reported.state = if index == 1 { State::Moving } else { State::Ready };
         reported.ticks_done += u32::from(index == 2);
@@ -339,7 +339,7 @@ fn positions_are_held_against_the_sums_of_the_ticks_from_where_the_controller_be
     assert_eq!(asked, [[Status, Positions].as_slice(), &whole].concat());
     assert_eq!(progress, Progress::Done);
 
-    // Told to stop while a reply is due: STOP comes next, is repeated, and what follows is asked.
+    // A stop request while a reply is due: STOP follows and is repeated, then the status is requested.
     let (asked, progress, known) = converse(|host, index, kind, _| {
         if index == 1 {
             host.stop(Instant(6));
@@ -353,7 +353,7 @@ fn positions_are_held_against_the_sums_of_the_ticks_from_where_the_controller_be
 
 #[test]
 fn the_time_for_a_reply_is_that_of_its_longest_form() {
-    // Kind, channels, bit times from the frame's end.
+    // Kind, channels, bit times from the end of the frame.
     for (kind, channels, bits) in [
         (Kind::Status, 16, 256),
         (Kind::Ticks, 1, 256),
@@ -373,7 +373,7 @@ fn the_time_for_a_reply_is_that_of_its_longest_form() {
 }
 
 #[test]
-fn a_job_on_a_real_line_begins_with_a_confirmed_tick_without_steps_and_then_every_reset_shows() {
+fn an_opening_tick_makes_every_later_reset_detectable() {
     use Kind::{Positions, Status, Ticks};
     // STATUS, POSITIONS, the opening tick, STATUS, two frames of ticks, STATUS, POSITIONS.
     let whole = [Status, Positions, Ticks, Status, Ticks, Ticks, Status, Positions];
@@ -389,12 +389,12 @@ fn a_job_on_a_real_line_begins_with_a_confirmed_tick_without_steps_and_then_ever
             (known.ticks_done(), known.positions.expect("told").as_slice()),
             (Some(4), &[3, i32::MAX - 7][..])
         );
-        // A controller that would look as after a reset gets another tick without steps.
+        // A controller that would look the same after a reset gets another tick without steps.
         let is_plain = seq != 255 && ticks_done != u32::MAX;
         assert_eq!(asked == whole, is_plain, "{what}: {asked:?}");
         assert!(asked.len() <= whole.len() + 4, "{what}: {asked:?}");
 
-        // Reset with its reply on the way, or lost, in one exchange or in two.
+        // A reset while its reply is on the line, or lost, in one exchange or in two.
         for (first, again) in
             (0..asked.len()).flat_map(|first| (first..asked.len()).map(move |again| (first, again)))
         {

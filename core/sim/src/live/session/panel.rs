@@ -170,7 +170,7 @@ mod tests {
         let mut session = session(QUICK);
         let _ = session.enter_for(0, (Signal::Start, true), Cycles(50));
         to(&mut session, 20);
-        // Let go by hand, and pressed again for good: what was to come would let it go too early.
+        // Released by hand and pressed permanently: the pending release would come too early.
         for level in [false, true] {
             session.enter(0, Change::Level(Signal::Start, level)).expect("it is to come");
         }

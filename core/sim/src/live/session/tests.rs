@@ -1,4 +1,4 @@
-//! Sessions that are recorded and replayed, and the host's conversation with one over a faulty line.
+//! Sessions that are recorded and replayed, and a host's exchange with a session over a faulty line.
 
 use super::*;
 use crate::{
@@ -17,7 +17,7 @@ fn sends(session: &Session) -> Vec<(u64, usize)> {
     session.run().schedule().iter().map(|send| (send.start.0, send.bytes.len())).collect()
 }
 
-/// 10 cycles a bit and a bit more: a byte's place is floor(10*j*1050/100).
+/// Slightly more than 10 cycles per bit: byte j starts at floor(10*j*1050/100).
 const SLOW: &str = r#"{ "clock_hz": 1155, "line": { "baud": 100 }, "bus": { "self_test_cycles": 0 } }"#;
 
 #[test]
@@ -27,7 +27,7 @@ fn a_byte_joins_the_last_send_if_its_time_is_in_the_future() {
     let rows: [Row; 6] = [
         (0, 1, &[(1, 1)]),
         (115, 1, &[(1, 2)]),
-        // The place of the third one is 1 + 231.
+        // The third one starts at 1 + 231.
         (231, 1, &[(1, 3)]),
         (347, 2, &[(1, 3), (348, 2)]),
         (348, 3, &[(1, 3), (348, 5)]),
@@ -141,7 +141,7 @@ fn random_scenario(random: &mut Random) -> String {
     )
 }
 
-/// Something that may be a packet, a frame, or neither.
+/// Bytes that may be a packet, a frame, or neither.
 fn random_chunk(random: &mut Random) -> Vec<u8> {
     let bytes = |random: &mut Random, most| {
         (0..random.below(most)).map(|_| random.below(256) as u8).collect::<Vec<u8>>()
@@ -225,8 +225,8 @@ impl Sink for Executed {
     }
 }
 
-/// A host and a soft device with a system between them that keeps bytes back, hands them over in pieces, bends some, and
-/// stops one of the two for a while. Gives where the host ended, what was ordered, and what was executed.
+/// A host and a simulated device, with a system between them that delays, divides and changes bytes, and
+/// stops one of the two for a while. Returns the host's final state, the sent commands, and the executed ones.
 fn over_a_bad_wire(seed: u64, stop: bool) -> (Progress, Vec<u8>, Vec<u8>, u32) {
     let mut random = Random::new(seed);
     let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "self_test_cycles": 20 },
@@ -242,7 +242,7 @@ fn over_a_bad_wire(seed: u64, stop: bool) -> (Progress, Vec<u8>, Vec<u8>, u32) {
     let mut host = Conversation::new(vec![job], &settings, Cycles(11), Instant(30)).with_slack(Cycles(5000));
     let bad = [0, 2_000, 30_000][random.below(3) as usize];
     let stop_at = stop.then(|| 30 + random.below(40_000));
-    // Bytes on their way: when they are read.
+    // Bytes in transit, with the time when they are read.
     let (mut to_device, mut to_host) = (VecDeque::<(u64, u8)>::new(), VecDeque::<(u64, u8)>::new());
     let mut executed = [Executed::default()];
     let wire = |random: &mut Random, now: u64, bytes: &[u8], queue: &mut VecDeque<(u64, u8)>| {
@@ -278,7 +278,7 @@ fn over_a_bad_wire(seed: u64, stop: bool) -> (Progress, Vec<u8>, Vec<u8>, u32) {
         device.advance(Instant(now), &mut executed);
         let replies: Vec<u8> = device.take_replies().map(|reply| reply.byte).collect();
         wire(&mut random, now, &replies, &mut to_host);
-        // Rounds of up to a millisecond; now and then somebody is stopped.
+        // Rounds of up to a millisecond; sometimes one of the two is stopped.
         now += 1 + random.below(100) + if random.below(2000) == 0 { random.below(30_000) } else { 0 };
         assert!(now < 100_000_000, "seed {seed}: the host never ends");
     }
@@ -287,7 +287,7 @@ fn over_a_bad_wire(seed: u64, stop: bool) -> (Progress, Vec<u8>, Vec<u8>, u32) {
     (host.progress().next().expect("one job"), orders, executed, host.acknowledged().next().expect("one job"))
 }
 
-/// How many seeds: `STEPSCOPE_SEEDS=100000` for the long form.
+/// Number of seeds: `STEPSCOPE_SEEDS=100000` for the long form.
 fn seeds() -> u64 {
     std::env::var("STEPSCOPE_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(400)
 }
@@ -297,12 +297,12 @@ fn on_a_bad_line_every_wrong_tick_is_reported() {
     let mut done = 0;
     for seed in 0..seeds() {
         let (progress, commanded, executed, acknowledged) = over_a_bad_wire(seed, false);
-        // Whatever became of it: what was executed is the beginning of what was ordered.
+        // In any case the executed commands are the first ones of those sent.
         assert!(commanded.starts_with(&executed), "seed {seed}: {progress}");
         assert!(executed.len() >= 2 * acknowledged as usize, "seed {seed}: {progress}");
         match progress {
             Progress::Done => assert_eq!(executed, commanded, "seed {seed}"),
-            // Where hardly a frame comes through.
+            // With noise that hardly any frame passes.
             other => assert_eq!(other, Progress::GivenUp(GivenUp::NoReply), "seed {seed}"),
         }
         done += u64::from(progress == Progress::Done);
@@ -321,8 +321,8 @@ fn a_stop_on_a_bad_line_leaves_the_first_ticks() {
     }
 }
 
-/// A host and a soft device whose connection ends after so many bytes in either direction. Gives how far the host was, ticks
-/// that it knows to be done, and what was ordered and executed.
+/// A host and a simulated device whose connection is cut after a number of bytes in either direction. Returns the host's state,
+/// the ticks that it has confirmed, and the sent and executed commands.
 fn cut_after(to_device: usize, to_host: usize) -> (Progress, u32, Vec<u8>, Vec<u8>, bool) {
     let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "self_test_cycles": 20 },
         "line": { "protocol": "framed", "baud": 9000 } }"#;
@@ -350,7 +350,7 @@ fn cut_after(to_device: usize, to_host: usize) -> (Progress, u32, Vec<u8>, Vec<u
         cut |= passed < replies.len();
         back -= passed;
     }
-    // Whatever is queued runs on.
+    // Queued ticks are executed.
     device.advance(now + Cycles(10_000), &mut executed);
     let progress = host.progress().next().expect("one job");
     let done = host.known().next().and_then(|(_, known)| known.ticks_done()).unwrap_or(0);
@@ -371,12 +371,12 @@ fn a_connection_cut_at_any_byte_leaves_the_first_ticks() {
             cuts += u32::from(cut);
         }
     }
-    // 2 * 8 + 2 * 8 + 2 * 13 bytes there, 4 * 17 + 2 * 25 back.
+    // 2 * 8 + 2 * 8 + 2 * 13 bytes to the device, 4 * 17 + 2 * 25 back.
     assert!(cuts > 150, "{cuts}");
 }
 
-/// A host and a soft device that is reset in each of these cycles. Gives where the host ended, and whether each STEP output had as
-/// many pulses as were ordered.
+/// A host and a simulated device that is reset in each of these cycles. Returns the host's final state, and whether each STEP
+/// output had the commanded number of pulses.
 fn with_resets(resets: &[u64], opening_tick: bool, restarts_with: u64) -> (Progress, bool, u64) {
     let json = r#"{ "clock_hz": 100000, "bus": { "channels": 2, "slots": 5, "step_period_cycles": 90, "queue_depth": 6, "self_test_cycles": 20 },
         "line": { "protocol": "framed", "baud": 9000 } }"#;
@@ -390,7 +390,7 @@ fn with_resets(resets: &[u64], opening_tick: bool, restarts_with: u64) -> (Progr
         host = host.with_opening_tick();
     }
     let mut pulses = [Pulses::default()];
-    // The device's cycle 0, and what is on its way to it.
+    // The device's cycle 0, and the bytes in transit to it.
     let (mut powered, mut now, mut coming) = (0, 30_u64, VecDeque::<(u64, u8)>::new());
     let mut resets = resets.iter().copied().peekable();
     while !host.is_over() {
@@ -440,11 +440,11 @@ fn a_reset_device_is_done_only_after_all_steps() {
     let (progress, right, end) = with_resets(&[], true, 0);
     assert_eq!((progress, right), (Progress::Done, true));
     let (mut done, mut wrong_without) = (0, 0);
-    // Single resets all along the job, and pairs.
+    // Single resets during the whole job, and pairs.
     let singles = (30..end).step_by(61).map(|at| vec![at]);
     let pairs = (30..end).step_by(487).flat_map(|at| [90, 1700, 9000].map(|later| vec![at, at + later]));
     for (index, resets) in singles.chain(pairs).enumerate() {
-        // Some devices are back at once, others take a while to start.
+        // Some devices restart immediately, others after a while.
         let restarts_with = [0, 4000][index % 2];
         let (progress, right, _) = with_resets(&resets, true, restarts_with);
         assert!(progress != Progress::Done || right, "{resets:?}: {progress}");
@@ -453,7 +453,7 @@ fn a_reset_device_is_done_only_after_all_steps() {
         let (progress, right, _) = with_resets(&resets, false, restarts_with);
         wrong_without += u32::from(progress == Progress::Done && !right);
     }
-    // Before its first step a device that was reset is begun with anew.
+    // Before the first step, the job restarts with a device that was reset.
     assert!(done > 50, "{done}");
     assert!(wrong_without > 5, "without the opening tick {wrong_without} are wrong");
 }
@@ -506,7 +506,7 @@ fn a_flood_is_read_at_the_rate_of_the_line() {
         assert_eq!(session.received() + input.len() as u64, read);
         assert!(session.received() >= 249_999, "{protocol}: {}", session.received());
         assert!(session.records_all());
-        // Once there is no more room in the recording, nothing is kept of a send without an end.
+        // When the recording is full, nothing of an endless send is stored.
         session.end_recording();
         for _ in 0..3 {
             while input.room() > 0 {
@@ -530,7 +530,7 @@ fn the_first_frame_of_a_host_is_separate_from_the_last_host() {
             r#"{{ "clock_hz": 1600, "line": {{ "baud": 100, "protocol": "{protocol}" }}, "bus": {{ "self_test_cycles": 0 }} }}"#
         )
     };
-    // Up to a frame without its delimiter, and one that is too long.
+    // Up to an incomplete frame, and one that is too long.
     let flood = vec![1; 700];
     for unfinished in (0..status.len()).map(|sent| &status[..sent]).chain([&flood[..]]) {
         let mut session = session(&json("framed"));
@@ -563,14 +563,14 @@ fn a_host_never_gets_replies_of_the_last_host() {
         session.advance::<Digest>(Instant(hangs_up), &mut []);
         session.take_replies().for_each(drop);
         session.hang_up();
-        // What the first host began to send ends, and the next one begins.
+        // The frame of the first host ends, and the next one begins.
         let begins = session.deadline().min(Instant(5000)).max(Instant(hangs_up + 1));
         session.advance::<Digest>(begins, &mut []);
         assert_eq!(session.take_replies().count(), 0, "{hangs_up}");
         session.receive(&status);
         session.advance::<Digest>(Instant(20_000), &mut []);
         let replies: Vec<ReplyByte> = session.take_replies().collect();
-        // A frame that comes while the controller still replies to the first host is lost, as on any such line.
+        // A frame that arrives while the controller still replies to the first host is lost, as on any such line.
         assert!([0, 17].contains(&replies.len()), "{hangs_up}: {}", replies.len());
         let earliest = begins + Cycles(160 * status.len() as u64);
         assert!(replies.iter().all(|reply| reply.end > earliest), "{hangs_up}");
@@ -587,7 +587,7 @@ fn a_session_replays_the_same_bytes() {
     let mut session = Session::new(&scenario).expect("it has no problems");
     let nobody: &mut [Vec<Record>] = &mut [];
     session.advance(Instant(5000), nobody);
-    session.receive(&frame::emit(0, 4, &[])); // STATUS, read while the model stands behind cycle 5000
+    session.receive(&frame::emit(0, 4, &[])); // STATUS, read while the model is behind cycle 5000
     session.advance(Instant(50_000), nobody);
     let reply: Vec<u8> = session.take_replies().map(|reply| reply.byte).collect();
     assert_eq!(reply.len(), 17);
