@@ -162,7 +162,7 @@ export const EXPLAINED = {
   ],
   "Motion.groups": [
     "Group",
-    "Moves of several axes that start in the same instant and end in the same instant. A group starts when the last axis is at rest.",
+    "Moves of several axes that start and end at the same time. A group starts when the last axis is at rest.",
   ],
   "Motor.holding_torque_mN_m": [
     "Holding torque",

@@ -5,7 +5,7 @@ use crate::moves::{LimitedProfile, Move};
 use alloc::{vec, vec::Vec};
 use stepscope_peripheral::parameters;
 
-/// Moves of several axes that start in the same instant and end in the same instant.
+/// Moves of several axes that start and end at the same time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Group {
     Time(TimeGroup),
@@ -47,7 +47,7 @@ parameters! { (Clone, Debug, PartialEq)
         pub points: Vec<WayPoint> = vec![WayPoint::default()],
     }
 
-    /// A point that all axes pass in the same instant.
+    /// A point that all axes pass at the same time.
     pub struct WayPoint {
         /// From the start of the motion, one per axis.
         pub positions: Vec<Distance> = vec![Distance::Steps(1000.0)],

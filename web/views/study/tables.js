@@ -131,7 +131,7 @@ export function createTables({ engine, now, panel }) {
     const hasPaper = forms.some(({ document_bytes }) => document_bytes !== null);
     setText(
       note,
-      `${best < 0 ? "" : `Fewest bytes (bold): ${FORMS[ROWS[best].form].toLowerCase()} (${WIDTHS[ROWS[best].widths]}). `}The compressed list searches for the longest entry; the exact list only continues an entry while it fits, so it can be longer even for error 0. One interval of 4 bytes per step would take ${count(4 * steps)} bytes.${hasPaper ? " In parentheses: bytes of the table in the paper." : ""} Every list has all steps.`,
+      `${best < 0 ? "" : `Fewest bytes (bold): ${FORMS[ROWS[best].form].toLowerCase()} (${WIDTHS[ROWS[best].widths]}). `}The compressed list has fewer entries, within the maximum error. One interval of 4 bytes per step would take ${count(4 * steps)} bytes.${hasPaper ? " In parentheses: bytes of the table in the paper." : ""} Every list has all steps.`,
     );
     mark();
   }

@@ -1,4 +1,4 @@
-//! Plans groups: moves of several axes that start and end in the same instants.
+//! Plans groups: moves of several axes that start and end at the same time.
 
 use crate::curves::between_speeds::MoveLimits;
 use crate::curves::constant_velocity::Dwell;

@@ -10,7 +10,7 @@ use stepscope_motion::shaper::{InputShaper, ShaperSettings};
 use stepscope_motion::{limits, moves::MAX_POINTS};
 
 kinds! {
-    /// Moves of several axes that start in the same instant and end in the same instant.
+    /// Moves of several axes that start and end at the same time.
     Group {
         /// Each axis has its own kind of move. Faster moves are stretched to the duration of the slowest.
         Time(TimeGroup) = "time" => label("Equal time").from(OWN),
@@ -65,7 +65,7 @@ fields! {
         /// Points in order. In all groups together, points times axes are at most 16384.
         points: Vec<WayPoint> => label("Points").length(1..=MAX_POINTS, "points"),
     }
-    /// A point that all axes pass in the same instant.
+    /// A point that all axes pass at the same time.
     WayPoint {
         /// Positions from the start of the motion, one for each axis; rounded to whole steps.
         positions: Vec<Distance> => label("Positions").range_text("one for each axis"),

@@ -49,7 +49,7 @@ settings! {
         /// groups an axis may have no moves.
         pub groups: Vec<Group> = Vec::new() => label("Groups")
             .length(limits::GROUPS, "groups")
-            .term("Group", "Moves of several axes that start in the same instant and end in the same instant. A group starts when the last axis is at rest.")
+            .term("Group", "Moves of several axes that start and end at the same time. A group starts when the last axis is at rest.")
             .from(OWN)
             .only_if_set(),
     }
