@@ -197,6 +197,7 @@ impl Decoder {
     }
 }
 
+/// Iterates over stored changes in order of time.
 #[derive(Clone, Debug)]
 pub struct Iter<'a> {
     blocks: slice::Iter<'a, Block>,

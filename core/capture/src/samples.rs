@@ -9,6 +9,7 @@
 //! }
 //! ```
 
+/// A sample recording with the scenario of its plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
     pub id: &'static str,

@@ -35,6 +35,7 @@ const MAX_START_DEVIATION: f64 = 1.5;
 /// Increment of the deviations that are tried.
 const DEVIATION_STEP: f64 = 0.25;
 
+/// Parity of a serial line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Parity {
     /// No parity bit.
@@ -123,6 +124,7 @@ impl FromStr for Format {
     }
 }
 
+/// A change of a serial line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
     /// Time in any unit: samples, ticks or cycles.
@@ -140,6 +142,7 @@ pub enum Fault {
     Parity,
 }
 
+/// A decoded byte with its fault, if it has one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
     /// Time of its start edge.

@@ -5,6 +5,7 @@ use crate::{check, limits, machine::StandAlone, refusal::Refusal, script};
 use core::fmt;
 use stepscope_peripheral::units::Instant;
 
+/// Why an input was not entered into a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NotEntered {
     NoController,

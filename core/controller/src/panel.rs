@@ -42,6 +42,7 @@ pub struct PanelRecord {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Word(pub u64);
 
+/// The status LED of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Led {
     /// Blinks quickly: an alarm.

@@ -87,6 +87,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub controllers: Vec<Parameters> = vec![Parameters::default()],
     }
 
+    /// The parameters of one controller.
     pub struct Parameters {
         pub self_test_cycles: u32 = 1600,
         /// Debounce time of buttons, keys and the release of the E-stop.
@@ -125,11 +126,13 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub release: Release = Release::AtOnce,
     }
 
+    /// The return to zero.
     pub struct Return {
         pub speed_hz: u32 = 1000,
         pub level: u8 = 3,
     }
 
+    /// Homing: search for a switch, back off, and approach it slowly.
     pub struct Home {
         /// The home switch or a limit.
         pub switch: Signal = Signal::HomeSwitch,
@@ -168,6 +171,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub hard_max_steps: Option<i64> = None,
     }
 
+    /// The EEPROM with the position journal, and the hold-up time of the supply.
     pub struct Memory {
         pub policy: Policy = Policy::PowerLoss,
         pub byte_write_cycles: u32 = 136_000,
@@ -178,6 +182,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub initial: Initial = Initial::Factory,
     }
 
+    /// A move by a length (Zhang 2012).
     pub struct Move {
         pub length: u32 = 1000,
         /// 1 right, 0 left.
@@ -197,6 +202,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub level: bool = true,
     }
 
+    /// A move to a position.
     pub struct MoveTo {
         /// Target as displayed, without its decimal point.
         pub length: i32 = 0,
@@ -216,6 +222,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub delay_ms: u32 = 0,
     }
 
+    /// Waits until an input has a level.
     pub struct Wait {
         /// `in_0` to `in_3` or a switch.
         pub input: Signal = Signal::In0,
@@ -226,12 +233,14 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub then: Option<u32> = None,
     }
 
+    /// Sets an output.
     pub struct Set {
         /// 0 to 3.
         pub output: u8 = 0,
         pub level: bool = true,
     }
 
+    /// Repeats the groups from an earlier one up to this one.
     pub struct Repeat {
         /// Number (from 1) of an earlier group.
         pub first: u32 = 1,
@@ -239,6 +248,7 @@ parameters! { (Clone, Debug, PartialEq, Eq)
         pub times: u32 = 2,
     }
 
+    /// Continues at another group.
     pub struct Jump {
         /// Number (from 1) of the next group.
         pub to: u32 = 1,

@@ -20,6 +20,7 @@ use stepscope_peripheral::config::Config;
 use stepscope_scenario::{Problem, Scenario};
 use stepscope_sim::{BUDGET_MOTOR_GRID_STEPS, BUDGET_RECORDS, Cost, Experiment, ValidatedScenario, axes_of};
 
+/// Problems, warnings, derived values and cost of a scenario, for the page.
 #[derive(Clone, Debug, Serialize)]
 pub struct Validation {
     pub problems: Vec<ProblemText>,
@@ -29,6 +30,7 @@ pub struct Validation {
     pub cost: Option<RunCost>,
 }
 
+/// A problem with the path of its field.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProblemText {
     pub path: String,
@@ -46,6 +48,7 @@ pub struct Derived {
     pub controllers: Vec<DerivedController>,
 }
 
+/// Derived values of one controller.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedController {
     pub tick_s: f64,
@@ -54,6 +57,7 @@ pub struct DerivedController {
     pub axes: Vec<DerivedAxis>,
 }
 
+/// Derived values of one axis.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedAxis {
     /// From the first to the last position.
@@ -68,6 +72,7 @@ pub struct DerivedAxis {
     pub moves: Vec<DerivedMove>,
 }
 
+/// Derived values of one move.
 #[derive(Clone, Debug, Serialize)]
 pub struct DerivedMove {
     pub start_s: f64,
@@ -78,6 +83,7 @@ pub struct DerivedMove {
     pub warning: String,
 }
 
+/// Computed cost of a run, before it runs.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunCost {
     pub edges: u64,

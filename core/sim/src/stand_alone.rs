@@ -52,6 +52,7 @@ impl Sink for Counted {
     }
 }
 
+/// Results of a run of stand-alone controllers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StandAloneSummary {
     pub panels: Vec<PanelSummary>,
@@ -63,6 +64,7 @@ pub struct StandAloneSummary {
 /// Ignored presses listed one by one.
 const MAX_LISTED: usize = 20;
 
+/// Results of one stand-alone controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PanelSummary {
     pub state: State,

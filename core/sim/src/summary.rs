@@ -40,6 +40,7 @@ pub struct Summary {
     pub stand_alone: Option<crate::StandAloneSummary>,
 }
 
+/// Results of one controller.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ControllerSummary {
     pub address: Option<u8>,

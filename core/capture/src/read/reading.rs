@@ -4,6 +4,7 @@ use super::base::Base;
 use crate::capture::Capture;
 use core::fmt;
 
+/// Limits of a reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Changes, bytes or positions: a byte or position takes 16 bytes, a change usually two to four.
@@ -25,6 +26,7 @@ pub struct ReadOptions {
     pub base: Option<Base>,
 }
 
+/// Why a reading ended early.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
     /// Line of the text, from 1; 0 if the file has no lines.

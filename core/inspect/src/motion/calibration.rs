@@ -21,6 +21,7 @@ pub struct Pair {
     pub steps: f64,
 }
 
+/// A straight line through pairs of length and steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// Steps per unit; above 0.
@@ -54,6 +55,7 @@ impl Fit {
     }
 }
 
+/// The least-squares lines with and without an offset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     pub through_origin: Fit,

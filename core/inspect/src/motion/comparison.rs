@@ -178,6 +178,7 @@ impl Request {
     }
 }
 
+/// A kind of motion that is compared with the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Candidate {
     Cosine(CosineMethod),
@@ -235,6 +236,7 @@ pub struct Cost {
     pub torque: Option<Torque>,
 }
 
+/// Whether the motor has enough torque for a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torque {
     /// Whether torque and rate suffice; jumps of speed are not checked.
@@ -242,6 +244,7 @@ pub struct Torque {
     pub min_margin: Option<Moment>,
 }
 
+/// One kind of motion with its cost.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     pub candidate: Candidate,

@@ -6,6 +6,7 @@
 use crate::motion::actual_motion::Pulses;
 use stepscope_motion::{AxisPlan, Breakpoints};
 
+/// Mean and root mean square over a span of time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Moments {
     pub mean: f64,

@@ -56,6 +56,7 @@ pub fn within_bounds<'p>(plans: impl IntoIterator<Item = &'p AxisPlan>) -> Resul
     Ok(())
 }
 
+/// Tracking errors, counts, peaks and durations of an axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Measures {
     pub length_s: f64,
@@ -73,6 +74,7 @@ pub struct Measures {
     pub sine: Option<SineMeasures>,
 }
 
+/// Numbers of planned and actual steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Counts {
     pub due: u64,
@@ -94,6 +96,7 @@ pub struct Extremes {
     pub start_stop_steps_s: f64,
 }
 
+/// Planned, requested and actual durations, in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Duration {
     pub planned_s: f64,

@@ -21,6 +21,7 @@ pub enum Freedom {
     Free,
 }
 
+/// The polyline of a sine with the minimum distortion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Optimum {
     /// From angle 0 to pi/2, scaled so that free vertices have a first harmonic of 1.

@@ -9,6 +9,7 @@ use stepscope_scenario::{Scenario, Source};
 /// Samples per harmonic for which the acceleration of a curve with corners is exact to about 1 %.
 const MIN_SAMPLES_PER_HARMONIC: u32 = 16;
 
+/// The spectra of the ideal curve and of the pulses.
 #[derive(Clone, Debug, Default)]
 pub struct Spectra {
     pub ideal: Option<Spectrum>,

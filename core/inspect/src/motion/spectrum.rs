@@ -49,6 +49,7 @@ fn distortion(amplitudes: &[f64]) -> Option<f64> {
     (first > 0.0).then(|| libm::sqrt(square) / first)
 }
 
+/// Harmonics of position, speed and acceleration over whole periods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     pub window: AnalysisWindow,

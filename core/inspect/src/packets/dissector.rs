@@ -18,6 +18,7 @@ use stepscope_peripheral::wire::frame::{
 use stepscope_peripheral::wire::packet::{ALL, ChannelCommand};
 use stepscope_peripheral::{config::Protocol, device::Faults, signal::Positions};
 
+/// A decoded field of a packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     pub name: Cow<'static, str>,
@@ -51,6 +52,7 @@ impl<T: Into<String>> From<T> for Value {
     }
 }
 
+/// Result of checking the CRC of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CrcCheck {
     None,
@@ -65,6 +67,7 @@ pub struct Dissection {
     pub crc: CrcCheck,
 }
 
+/// Decodes packets of one line to fields.
 #[derive(Clone, Copy)]
 pub struct Dissector<'a> {
     pub protocol: Protocol,

@@ -23,6 +23,7 @@ pub struct Span {
     pub sample: Option<u64>,
 }
 
+/// Decoded bits, bytes and fields of one line, in order of time.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Spans {
     pub bits: Vec<Span>,
@@ -30,6 +31,7 @@ pub struct Spans {
     pub fields: Vec<Span>,
 }
 
+/// Decoded RX and TX in a window.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Decoded {
     pub rx: Spans,
@@ -38,6 +40,7 @@ pub struct Decoded {
     pub more: bool,
 }
 
+/// Decodes RX and TX of a run for the logic view.
 #[derive(Clone, Copy)]
 pub struct LineDecoder<'a> {
     table: PacketTable<'a>,

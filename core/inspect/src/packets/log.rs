@@ -67,6 +67,7 @@ pub struct LoggedPacket {
     latest: Instant,
 }
 
+/// A reply in a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordedReply<'a> {
     pub start: Instant,
@@ -84,6 +85,7 @@ pub struct LoggedTick {
     pub row: Option<usize>,
 }
 
+/// Collects the packets, replies and ticks of a controller during a run.
 #[derive(Clone, Debug, Default)]
 pub struct PacketLog {
     rows: Vec<LoggedPacket>,

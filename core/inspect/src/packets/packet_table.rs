@@ -26,6 +26,7 @@ use stepscope_peripheral::config::{Config, Protocol};
 use stepscope_peripheral::{units::Instant, wire::BitTimes};
 use stepscope_sim::{Experiment, Run};
 
+/// What a row of the packet table is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowKind {
     Packet,
@@ -69,6 +70,7 @@ pub struct Row {
     pub tick_end_cycle: Option<u64>,
 }
 
+/// A tick of the packet table.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct TickRow {
     pub start_cycle: u64,
@@ -84,6 +86,7 @@ pub struct Choices {
     pub kinds: Vec<&'static str>,
 }
 
+/// The packets of one controller as rows of text.
 #[derive(Clone, Copy)]
 pub struct PacketTable<'a> {
     experiment: &'a Experiment,

@@ -22,6 +22,7 @@ const MIN_BINS: u64 = 512;
 const MAX_SNAPSHOTS: usize = 64;
 const POINTS_PER_COLUMN: u64 = 2;
 
+/// Simulated points of a plant, compressed to minima and maxima per bin.
 #[derive(Clone, Debug)]
 pub struct PlantLog {
     step_cycles: u64,
@@ -48,6 +49,7 @@ pub struct CycleWindow {
     pub columns: usize,
 }
 
+/// Minimum and maximum of a quantity over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Band {
     /// Cycles of points, or of the middles of intervals.

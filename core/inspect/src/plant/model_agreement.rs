@@ -71,6 +71,7 @@ impl Observer for FirstSlips {
     }
 }
 
+/// Comparison of the torque-speed curve with the plant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
     pub plant: String,

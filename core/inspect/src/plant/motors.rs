@@ -10,6 +10,7 @@ use stepscope_motion::motor::{Decay, Drive, Motor, Regulator};
 use stepscope_motion::moves::Axis;
 use stepscope_scenario::{PlantMotor, Scenario, Source};
 
+/// Parameters of a listed motor, with their source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorSheet {
     pub id: &'static str,
@@ -30,6 +31,7 @@ pub struct MotorSheet {
     pub typical: &'static [&'static str],
 }
 
+/// Parameters of a listed motor driver, with their source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriveSheet {
     pub id: &'static str,

@@ -7,6 +7,7 @@ use stepscope_plant::measures::{MotorResult, Peak, PlantResult};
 use stepscope_plant::parameters::Setup;
 use stepscope_sim::{Experiment, Run};
 
+/// Results of a plant as tables.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlantReport {
     pub plant: PlantSummary,
@@ -15,6 +16,7 @@ pub struct PlantReport {
     pub self_test: Vec<SelfTest>,
 }
 
+/// Results of the supply and its sensor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlantSummary {
     pub controller: usize,
@@ -32,6 +34,7 @@ pub struct PlantSummary {
     pub overload_cycle: Option<u64>,
 }
 
+/// Results of one motor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Motor {
     pub channel: usize,
@@ -60,6 +63,7 @@ pub struct Motor {
     pub energy_left_over: Option<String>,
 }
 
+/// A slip by four full steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Slip {
     pub channel: usize,

@@ -41,6 +41,7 @@ pub struct ExactTimes {
     pub base: Timebase,
 }
 
+/// What a comparison compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {

@@ -7,6 +7,7 @@ use serde::Serialize;
 /// Maximum listed differences.
 pub const MAX_LISTED: usize = 100_000;
 
+/// How a recorded event differs from the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DifferenceKind {
@@ -35,6 +36,7 @@ pub struct Difference {
     pub recorded_value: Option<u8>,
 }
 
+/// The first differences in order of time, and the number of all.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Differences {
     pub listed: Vec<Difference>,

@@ -19,6 +19,7 @@ pub struct Events {
     exact: Option<ExactTimes>,
 }
 
+/// A recording compared with a plan, step by step or byte by byte.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EventComparison {
     pub kind: Kind,

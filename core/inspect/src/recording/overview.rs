@@ -3,6 +3,7 @@
 use crate::motion::curves::{Actual, Band, Window};
 use stepscope_peripheral::trace::Step;
 
+/// Position and speed of a whole recording in columns, computed in one pass.
 #[derive(Clone, Debug)]
 pub struct Overview {
     window: Window,

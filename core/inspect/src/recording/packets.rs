@@ -13,6 +13,7 @@ use stepscope_peripheral::wire::bit_times::BYTE_BITS;
 use stepscope_peripheral::wire::frame::{DELIMITER, Deframed, Deframer};
 use stepscope_peripheral::{config::Protocol, protocol::FrameOutcome, units::Instant};
 
+/// A packet on RX or TX of a recording.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LinePacket {
     pub line: &'static str,
@@ -26,6 +27,7 @@ pub struct LinePacket {
     pub outcome: String,
 }
 
+/// The packets of a recording, in order of time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packets {
     pub rows: Vec<LinePacket>,

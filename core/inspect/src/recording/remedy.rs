@@ -14,6 +14,7 @@ pub enum Remedy {
     BaudOrFormat,
 }
 
+/// A note on a recording, with a remedy if there is one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     pub text: String,

@@ -12,18 +12,21 @@ use stepscope_capture::uart::{Edge, Estimate, Format, NoRate, estimate};
 use stepscope_peripheral::signal::{Levels, Record};
 use stepscope_peripheral::trace::Step;
 
+/// Figures of the channels and lines of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
     pub channels: Vec<ChannelReport>,
     pub lines: Vec<LineReport>,
 }
 
+/// Figures of a channel with steps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChannelReport {
     pub channel: u8,
     pub figures: StepFigures,
 }
 
+/// Rate, format and bytes of a serial line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LineReport {
     pub name: &'static str,

@@ -28,6 +28,7 @@ const MARGIN: u64 = 1;
 /// A pulse is at most this fraction (1/2) of the interval, so that DIR can change.
 const MAX_WIDTH_PART: u64 = 2;
 
+/// Options for a scenario that reproduces recorded steps.
 #[derive(Clone, Copy, Debug)]
 pub struct StepRequest {
     pub clock_hz: u32,
@@ -36,6 +37,7 @@ pub struct StepRequest {
     pub within_cycles: u64,
 }
 
+/// A scenario that reproduces a recording, with its errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reproduction {
     pub scenario: Scenario,
@@ -177,6 +179,7 @@ fn pulse_times(records: Option<&[Record]>, all: &[Vec<Step>], clock_hz: u32) -> 
     PulseTimes { width: Cycles(width), setup: Cycles(setup), hold: Cycles(0) }
 }
 
+/// Options for a scenario that reproduces recorded bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct ByteRequest {
     pub clock_hz: u32,

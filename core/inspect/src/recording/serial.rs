@@ -82,12 +82,14 @@ pub(super) fn looks_like_seven_bit_text(bytes: &[DecodedByte]) -> bool {
         && bytes.iter().filter(is_text).count() * 10 >= bytes.len() * 9
 }
 
+/// A byte with the time of its start bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DecodedByte {
     pub start: Instant,
     pub byte: u8,
 }
 
+/// The bytes and errors of a serial line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DecodedLine {
     pub bytes: Vec<DecodedByte>,

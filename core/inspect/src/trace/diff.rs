@@ -56,6 +56,7 @@ impl Difference {
     }
 }
 
+/// Result of comparing a file with a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
     pub same: u64,

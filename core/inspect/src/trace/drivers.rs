@@ -6,6 +6,7 @@
 use crate::trace::timing::TimingCheck;
 use stepscope_scenario::{DriverModel, DriverTiming, Scenario, TimingRules};
 
+/// A driver's timing rules, with their source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheet {
     pub model: DriverModel,

@@ -10,6 +10,7 @@ use stepscope_peripheral::{trace::levels_at, units::Instant};
 
 const SIGNALS: u32 = 36;
 
+/// One edge of one signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct EdgeRow {
     pub cycle: u64,

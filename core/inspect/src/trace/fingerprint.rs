@@ -91,6 +91,7 @@ fn high_half(digest: &Digest) -> u32 {
     (digest.value() >> 32) as u32
 }
 
+/// A position in a trace: the records and edges before it, and its cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
     pub records: u64,
@@ -98,6 +99,7 @@ pub struct Mark {
     pub cycle: Instant,
 }
 
+/// Result of comparing a trace with a fingerprint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FingerprintMatch {
     Same(Mark),
@@ -110,6 +112,7 @@ pub enum FingerprintMatch {
     },
 }
 
+/// Which of two traces ends first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shorter {
     This,

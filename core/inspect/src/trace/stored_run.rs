@@ -21,6 +21,7 @@ pub use stepscope_sim::MAX_RECORDS;
 /// Records between two calls of [`check_records`].
 pub const RECORDS_PER_CHECK: u64 = 1 << 16;
 
+/// Trace, digest and packets of a controller's run.
 #[derive(Clone, Default)]
 pub struct StoredRun {
     pub trace: Vec<Record>,

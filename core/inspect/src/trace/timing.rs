@@ -94,6 +94,7 @@ pub struct Shortest {
     pub channel: u8,
 }
 
+/// Result of one timing rule over all channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RuleResult {
     pub rule: Rule,

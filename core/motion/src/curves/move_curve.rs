@@ -4,6 +4,7 @@ use crate::curves::phases::State;
 use crate::timing::Schedule;
 use alloc::vec::Vec;
 
+/// A curve that a new target can cut at any time.
 #[allow(private_bounds, reason = "only this crate implements it")]
 pub trait MoveCurve: Schedule {
     /// Period in s and number of periods of an oscillation; `None` for other moves.

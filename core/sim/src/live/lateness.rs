@@ -5,6 +5,7 @@ use core::fmt;
 /// Upper ends of the bars in microseconds; the last bar has no end.
 const BARS_US: [u64; 9] = [100, 250, 500, 1000, 2000, 5000, 10_000, 20_000, 50_000];
 
+/// A histogram of delays, with their maximum.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Lateness {
     bars: [u64; BARS_US.len() + 1],

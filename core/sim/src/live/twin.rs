@@ -43,6 +43,7 @@ struct Opening {
     positions: Option<Positions>,
 }
 
+/// Runs the model next to a real device, and compares their replies.
 #[derive(Clone)]
 pub struct Twin {
     session: Session,

@@ -12,6 +12,7 @@ const MILLI: f64 = 1000.0;
 const GRAM_CM2: f64 = 1e-7;
 const MIN_PERIOD_S: f64 = 1e-6;
 
+/// A motor with its driver, supply and load, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Machine {
     constant: f64,

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+/// Needed and available torque at one time, with the rate in steps/s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Moment {
     pub at_s: f64,

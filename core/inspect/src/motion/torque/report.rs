@@ -30,6 +30,7 @@ pub struct TorqueReport {
     pub curve: TorqueCurve,
 }
 
+/// The feasible ramps of one move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MoveRamps {
     pub index: usize,

@@ -12,6 +12,7 @@ const DE_BITS: u64 = 10;
 /// Maximum rows between a reply and its frame.
 const NEAR: usize = 64;
 
+/// A row with its fields, CRC and times, for the inspector.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Detail {
     #[serde(flatten)]

@@ -13,6 +13,7 @@ use stepscope_peripheral::{device::Faults, signal::PacketOutcome};
 /// Maximum rows from a frame to its reply.
 const NEAR: usize = 64;
 
+/// A fault flag, with the first row that set it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct FirstFault {
     pub name: &'static str,

@@ -14,6 +14,7 @@ pub struct Filter {
     next: usize,
 }
 
+/// Search text and filters of the packet table.
 #[derive(Debug, Default)]
 pub struct Request {
     needle: Option<Needle>,

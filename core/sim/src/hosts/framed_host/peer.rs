@@ -155,6 +155,7 @@ impl fmt::Display for Progress {
     }
 }
 
+/// What the host has learned about a controller from its replies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Known {
     /// The first status while it was idle.

@@ -21,6 +21,7 @@ pub fn for_real_line(mut scenario: Scenario) -> Scenario {
     scenario
 }
 
+/// Result of a job for one controller.
 #[derive(Clone, Debug)]
 pub struct ReportRow {
     pub controller: usize,
@@ -115,6 +116,7 @@ impl fmt::Display for ReportRow {
     }
 }
 
+/// Results of a job for all controllers, and the counters of the host.
 #[derive(Clone, Debug)]
 pub struct Report {
     pub rows: Vec<ReportRow>,

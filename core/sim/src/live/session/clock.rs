@@ -48,6 +48,7 @@ pub struct Setbacks {
     pub cycles: Cycles,
 }
 
+/// Converts wall-clock time to cycles of a session, and sets itself back after a lag.
 #[derive(Clone, Debug)]
 pub struct SessionClock {
     clock_hz: u32,
