@@ -20,7 +20,7 @@ impl Default for Group {
 }
 
 parameters! { (Clone, Debug, PartialEq)
-    /// Each axis has its own kind of move; all last equally long.
+    /// Each axis has its own kind of move; all have the same duration.
     pub struct TimeGroup {
         /// `None` is the duration of the slowest move.
         pub duration_s: Option<f64> = None,

@@ -289,7 +289,7 @@ pub struct FrequencyRange {
     pub max_residual: f64,
 }
 
-/// The shaper with the least smoothing of those that leave little enough vibration.
+/// The shaper with the minimum smoothing that leaves at most the allowed vibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recommendation {
     pub shaper: Shaper,
@@ -334,7 +334,7 @@ impl FrequencyRange {
         largest
     }
 
-    /// The recommended shaper; if none leaves little enough vibration, the one that leaves the least. `None` if no kind
+    /// The recommended shaper; if all exceed the allowed vibration, the one that leaves the minimum. `None` if no kind
     /// allows the damping ratio, or if the frequencies are not within 0.1 to 1000 Hz and rising.
     pub fn recommend(&self) -> Option<Recommendation> {
         if !(self.low_hz >= MIN_HZ && self.low_hz <= self.high_hz && self.high_hz <= MAX_HZ) {
@@ -558,7 +558,7 @@ mod tests {
         let rows = [
             ([20.0, 20.0], 0.0, 0.05),
             ([19.95, 21.07], 0.1, 0.06),
-            // No kind leaves as little: the one that leaves the least.
+            // All kinds exceed the allowed vibration: the one that leaves the minimum.
             ([18.0, 24.0], 0.1, 1e-4),
             ([12.0, 13.0], 0.35, 0.02),
             ([0.1, 0.2], 0.1, 0.5),

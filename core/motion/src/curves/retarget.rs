@@ -7,8 +7,8 @@
 //!              +-v----------w--- speed
 //! ```
 //!
-//! A position is reached by a push and a stop: the push is the fastest change to full speed toward the target. While it
-//! lasts, the end of the stop only moves toward the target, so one instant to stop is right.
+//! A position is reached by a push and a stop. The push is the fastest change to full speed toward the target. During the
+//! push, the position where a stop would end moves toward the target, so a stop at exactly one time ends at the target.
 
 use crate::bisection::border;
 use crate::curves::between_speeds::MoveLimits;
@@ -78,7 +78,7 @@ fn with_jumps(limits: &MoveLimits, speed: f64, to: f64) -> [Phase; 2] {
     [phase(speed, middle, limits.deceleration), phase(middle, to, limits.acceleration)]
 }
 
-/// A change of speed that goes up.
+/// An increase of the speed.
 struct Climb {
     jerk: f64,
     speed: f64,
@@ -119,7 +119,7 @@ impl Climb {
         self.phases
     }
 
-    /// Follows the largest q up to `cap` that falls to 0 at speed `end`, as far as speed `until`.
+    /// Follows the largest q up to `cap` that falls to 0 at speed `end`, up to speed `until`.
     fn within(&mut self, cap: f64, end: f64, until: f64) {
         if self.q > cap {
             self.follow(-1.0, self.speed + self.q - cap, until);
