@@ -7,9 +7,9 @@ use stepscope_core::prelude::*;
 fn main() -> Result<(), Problems> {
     let scenario: Scenario = include_str!("turn.json").parse()?;
     let due = step_times(&scenario, 0)?; // planned steps of axis 0, in cycles from the start
-    let run = run(&scenario)?; // what the motors are given, to the clock cycle
+    let run = run(&scenario)?; // the actual pulses, cycle by cycle
     println!("{} steps, digest {:016x}", due.len(), run.digest());
     assert_eq!(run.positions(), [3200]);
-    assert_eq!(first_difference(&due, &due, Cycles(16)), None); // the second: your own step generator's
+    assert_eq!(first_difference(&due, &due, Cycles(16)), None); // second list: those of your own step generator
     Ok(())
 }

@@ -109,7 +109,7 @@ test("a draft replaces the problems of the previous value", () => {
   assert.deepEqual(problemsOf({ drafts: {}, validation: null }), []);
 });
 
-// The linter takes an object that is written with `then` for a promise.
+// The linter takes an object with a method `then` for a promise.
 const wait = (number) => JSON.parse(`{"wait":{"then":${number}}}`);
 
 test("references between groups follow changes", () => {

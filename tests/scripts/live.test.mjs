@@ -68,7 +68,7 @@ test("a press of STOP stays pending until it has reached the device", () => {
   const stream = streaming();
   assert.equal(stream.pressStop().action, "stop");
   assert.ok(stream.stopPressed);
-  // It was too late for this stream, which ended without a confirmation.
+  // The stop was too late for this stream, which ended without a confirmation.
   stream.reported({ ...framed, verified: false, why: "lost" });
   assert.ok(stream.stopPressed);
   assert.equal(stream.closed(), false);

@@ -7,7 +7,7 @@ import { update } from "../../web/state/update.js";
 const validation = { problems: [], warnings: [], scenario: "{}", derived: null, cost: null };
 const summary = { end_cycle: 10, clock_hz: 1, controllers: [{ channels: 1 }] };
 
-/** A runner with a state of its own, and what it asked of the engine. */
+/** A runner with its own state, and its requests to the engine. */
 function bench() {
   const calls = [];
   const made = { state: initial({ title: "turn" }), calls, blocked: 0 };

@@ -45,7 +45,7 @@ const b = (state) => state.scenario.a.b;
 const empty = (view, isEmpty) => ({ type: "empty", view, isEmpty });
 const rows = (some) => ({ type: "rows", rows: some });
 
-/** @type {[string, any[], (state: any) => any, any][]} name, messages, what is compared, what it must be */
+/** @type {[string, any[], (state: any) => any, any][]} name, messages, compared value, expected value */
 const cases = [
   // History.
   ["an edit changes one value", [edit("a.b", 2)], (s) => s.scenario, { ...first, a: { b: 2 } }],
@@ -124,7 +124,7 @@ const cases = [
     [{ start: 10, end: 50 }, 12, null, [], null],
   ],
   ["only a scenario that replaces another counts as opened", [edit("a.b", 2), replace({}), undo], (s) => s.opened, 1],
-  // Drafts: texts that are no number yet.
+  // Drafts: texts that are not numbers yet.
   ["a draft holds the run", [validated(0), draft("a.b")], (s) => [blockedBy(s), isStale(s)], ["problems", true]],
   [
     "undo takes drafts away first",
@@ -367,7 +367,7 @@ const cases = [
     (s) => s.result.controller,
     1,
   ],
-  // The shown time.
+  // The visible time.
   ["without a window all is shown", [done(0)], shown, { start: 0, end: 1000 }],
   ["before a result the least is shown", [], shown, { start: 0, end: MIN_SPAN }],
   ["a window is kept inside the run", [done(0), window(-50, 100)], (s) => s.window, { start: 0, end: 150 }],
@@ -412,7 +412,7 @@ const cases = [
   ["an edit forgets what a sender saw", [sender, done(0), compared(), edit("a.b", 2)], (s) => s.sender, null],
   ["so does undo", [edit("a.b", 2), sender, undo], (s) => s.sender, null],
   ["an edit forgets a link's window", [open(10, 50), edit("a.b", 2), done(1)], (s) => s.window, null],
-  // What is pointed at.
+  // Hover and highlights.
   [
     "the same highlight is no change",
     [
@@ -431,7 +431,7 @@ const cases = [
     (s) => [s.folds[2], s.folds[3], s.folds[15]],
     [true, false, true],
   ],
-  // How the views and the rows of the pulses stand.
+  // Layout of the views and of the rows of the pulses.
   [
     "a view that has nothing to show is told once",
     [empty("packets", true), empty("packets", true), empty("spectrum", true)],

@@ -4,7 +4,7 @@ import { hasSlider, limitsIn, limitsOf, sliderRange } from "../../web/form/limit
 import { createScrub, isDrag } from "../../web/state/drag.js";
 import { added, placeAt, scrubPlace, stepped } from "../../web/state/step_number.js";
 
-/** A text with `|` for its caret after one step. */
+/** A text with `|` at its cursor, after one step. */
 function step(marked, by) {
   const caret = marked.indexOf("|");
   const next = stepped(marked.replace("|", ""), caret, by);
@@ -76,10 +76,10 @@ test("a press becomes a drag after some pixels, and a finger that scrolls drags 
 
   const mouse = createScrub(at(0, 0));
   assert.deepEqual([at(3, 0), at(0, 9), at(8, 0), at(-8, 0)].map(mouse.move), [null, null, 2, -2]);
-  // A scroll that ends sideways.
+  // A scroll that ends in a horizontal movement.
   const scroll = createScrub(at(0, 0));
   assert.deepEqual([at(4, 40, "touch"), at(90, 41, "touch")].map(scroll.move), [null, null]);
-  // The way to the threshold counts for nothing.
+  // The movement up to the threshold does not count.
   const touch = createScrub(at(0, 0));
   assert.deepEqual([at(11, 3, "touch"), at(15, 3, "touch"), at(35, 60, "touch")].map(touch.move), [0, 1, 6]);
 });

@@ -5,7 +5,7 @@ import { parseView, writeView } from "../../web/shell/view_part.js";
 const WHOLE = "120-4500.k1.x2.a300.b900.tpackets.stiming.umm.omotor.qphases-supply";
 const SIGNS = ["0", "9", "a", "k", "Z", ".", "-", "_", "%", " ", "\u00e9", ""];
 
-/** The whole view, each of its beginnings, and each change of one character. */
+/** The whole view, each of its truncations, and each change of one character. */
 function views() {
   const given = [WHOLE];
   for (let at = 0; at < WHOLE.length; at++) {

@@ -1,3 +1,3 @@
-// Starts the worker; a page that measured itself would also measure its own painting.
+// Starts the worker, because the page's own painting must not be measured.
 const worker = new Worker('worker.js', { type: 'module' });
 worker.onerror = (event) => fetch('/failed', { method: 'POST', body: event.message ?? 'the worker did not start' });

@@ -1,5 +1,5 @@
-// Asks how many rounds to measure, measures them and sends the report with the next question, until
-// the answer is 0.
+// Requests a number of rounds, measures them, and sends the report with the next request, until
+// the number is 0.
 import init, { Bench } from './pkg/stepscope_bench.js';
 
 const ask = async (report) => Number(await (await fetch('/rounds', { method: 'POST', body: report })).text());

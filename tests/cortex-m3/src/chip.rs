@@ -1,8 +1,8 @@
-//! The stand-alone controller on this processor, as the chip's own program: the example of `firmware/controller` with
-//! `SysTick` for its timer, two ports and an EEPROM in RAM. Somebody at the panel presses start and cuts the power.
+//! The stand-alone controller as a program on this processor: the example of `firmware/controller` with `SysTick` as its
+//! timer, two ports and an EEPROM in RAM. A simulated user presses start and cuts the power.
 //!
-//! The emulator's time is the host's, so interrupts are as late as the host is busy: positions and memory are checked, not
-//! ticks. Those are checked on the bench, where time passes by steps: the very edges of a golden case.
+//! The emulator runs in real time, so interrupts are late on a busy host: positions and memory are checked, but no ticks.
+//! Ticks are checked on the bench with simulated time: exactly the edges of a golden case.
 
 extern crate alloc;
 
@@ -31,32 +31,32 @@ use stepscope_core::{
 };
 use stepscope_tests::golden::{CASES, Case};
 
-/// The golden case that is run on the bench: a program, a power cut with hold-up, and the power is back.
+/// The golden case for the bench: a program, a power cut with hold-up, and the return of the power.
 const ON_THE_BENCH: &str = "preset-controller-power-cut";
-/// Of the board: `SysTick` counts the processor's clock down.
+/// Properties of the board: `SysTick` counts the processor's clock down.
 const CLOCK_HZ: u32 = 25_000_000;
 const SYSTICK_BITS: u32 = 24;
 const RELOAD: u32 = (1 << SYSTICK_BITS) - 1;
-/// Bits of the panel's port; the pull-ups hold them high.
+/// Bits of the panel's port, which pull-ups hold high.
 const START: u32 = 1 << 0;
 const ESTOP: u32 = 1 << 1;
 const POWER: u32 = 1 << 2;
-/// Nobody presses anything, and the emergency stop's contact is closed.
+/// No button is pressed, and the contact of the emergency stop is closed.
 const AT_REST: u32 = START | POWER;
 const CONTACTS: &[Contact] =
     &[Contact::closes(Signal::Start, 0), Contact::opens(Signal::Estop, 1), Contact::opens(Signal::Power, 2)];
 const _: () = assert!(AT_REST & ESTOP == 0);
 
-/// The chip. What its ports would be are words here.
+/// The chip. Its ports are variables here.
 struct Board {
     clock: Clock,
     panel: u32,
     motor: u32,
     eeprom: Vec<u8>,
-    /// Address and byte that are being written, and when they are there.
+    /// Address and value of the byte in progress, and the time of its completion.
     writing: Option<(usize, u8, Instant)>,
     byte_write: Cycles,
-    /// Where the motor is by the edges of STEP.
+    /// Position of the motor by the edges of STEP.
     place: i64,
     face: Option<Face>,
 }
@@ -80,7 +80,7 @@ impl Board {
         }
     }
 
-    /// Until the tick, or an input changes; a chip with a timer that compares would sleep.
+    /// Waits for the tick, or for a change of an input; a chip with a compare timer would sleep.
     fn sleep(&mut self, wake: Option<Instant>) {
         let panel = self.panel;
         let now = self.now();
@@ -144,16 +144,16 @@ fn checked() -> Result<CheckedSetup, String> {
     setup.check().map_err(|refused| format!("{refused:?}"))
 }
 
-/// The chip's program, in the emulator's time: a move, a power cut in the midst of the next, and another one after the
-/// power is back. Where it is and how late it was at worst, in words.
+/// Runs the program in real time: a move, a power cut during the next one, and another move after the
+/// power returns. Returns the position and the maximum lateness as text.
 ///
 /// # Errors
-/// What is not as it should be.
+/// The first deviation.
 pub(crate) fn on_the_board(timer: SYST) -> Result<String, String> {
     let checked = checked()?;
     let mut board = Board::new(timer, &checked);
     let mut starts = 0;
-    // From READY to READY by a press; in the second move the power falls, and the chip dies.
+    // From READY to READY by a press; during the second move the power fails, and the chip stops.
     run(&mut board, &checked, |board, runner, wake| {
         let state = runner.machine().state(0);
         match state {
@@ -174,7 +174,7 @@ pub(crate) fn on_the_board(timer: SYST) -> Result<String, String> {
     .map_err(|refused| format!("{refused}"))?;
     let cut_at = board.place;
 
-    // The power is back; the position comes from the EEPROM.
+    // The power returns; the position comes from the EEPROM.
     (board.panel, starts) = (AT_REST, 0);
     let runner = run(&mut board, &checked, |board, runner, wake| {
         match runner.machine().state(0) {
@@ -199,10 +199,10 @@ pub(crate) fn on_the_board(timer: SYST) -> Result<String, String> {
     Ok(format!("cut at {cut_at}, LCD {lcd}, at worst {} cycles late", runner.lateness().worst.0))
 }
 
-/// The same program on the bench: the edges and the panel of a golden case.
+/// Runs the same program on the bench, and compares the edges and the panel of a golden case.
 ///
 /// # Errors
-/// What is not as it should be.
+/// The first deviation.
 pub(crate) fn on_the_bench() -> Result<(), String> {
     let case = CASES.iter().find(|case| case.name == ON_THE_BENCH).ok_or("there is no such case")?;
     let experiment = case.experiment()?;

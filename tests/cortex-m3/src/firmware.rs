@@ -1,4 +1,4 @@
-//! The program: runs every case, the example driver and the example controller, and ends with success or failure, all through semihosting.
+//! The program: runs every case, the example driver and the example controller, and reports success or failure by semihosting.
 
 extern crate alloc;
 
@@ -10,7 +10,7 @@ use cortex_m_semihosting::{
     hprintln,
 };
 use embedded_alloc::TlsfHeap;
-// A panic, also that of an allocation for which there is no room, is printed and ends with failure.
+// A panic, also of a failed allocation, is printed and ends the program with failure.
 use panic_semihosting as _;
 use stepscope_core::peripheral::{
     config::{Bus, Config, SerialLine},
@@ -21,7 +21,7 @@ use stepscope_core::peripheral::{
 use stepscope_firmware::{ChannelCommand, Driver, Error};
 use stepscope_tests::{golden::CASES, plant_digests::plant_cases};
 
-/// Bytes; what the heap and the constants leave of memory.x's RAM is the stack's.
+/// In bytes; the stack has the rest of memory.x's RAM after the heap and the constants.
 const HEAP_BYTES: usize = 3 << 20;
 
 #[global_allocator]
@@ -77,7 +77,7 @@ fn main() -> ! {
     end(if failed == 0 { EXIT_SUCCESS } else { EXIT_FAILURE })
 }
 
-/// The example driver, built for this processor, moves two axes of the model: where they end.
+/// The example driver, built for this processor, moves two axes of the model; returns their positions.
 fn drive() -> Result<[i32; 2], Error> {
     let bus = Bus { channels: 2, ..Bus::default() };
     let Ok(config) = Config::new(16_000_000, &bus, &SerialLine::default()) else {
@@ -98,7 +98,7 @@ fn on_the_board() -> Result<String, String> {
     chip::on_the_board(peripherals.SYST)
 }
 
-/// A crash would otherwise be silence until the time is up.
+/// Without this handler a crash would be silent until the timeout.
 #[exception]
 #[allow(unsafe_code, reason = "a fault's handler may be called by nobody but the processor")]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
@@ -106,7 +106,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     end(EXIT_FAILURE)
 }
 
-/// Ends the emulator; a debugger on real hardware may come back from there.
+/// Ends the emulator; on real hardware a debugger may return from here.
 fn end(status: ExitStatus) -> ! {
     debug::exit(status);
     loop {
