@@ -1,9 +1,11 @@
 /** The axes of a controller: mechanics, moves and motor. */
 import { button, element } from "../dom.js";
+import { withAxis, withoutAxis } from "../state/group_axes.js";
 import { MAX_CHANNELS } from "../state/limits.js";
 import { get, set } from "../state/paths.js";
+import { choiceItem } from "./choice.js";
 import { pointsFirst } from "./fields.js";
-import { fieldsOfKind, labels, maxLengthOf } from "./schema.js";
+import { choices, fields, fieldsOfKind, groupOfKind, labels, maxLengthOf } from "./schema.js";
 import { removed } from "./structure.js";
 
 /** @typedef {import("./kit.js").Kit} Kit */
@@ -32,7 +34,7 @@ export function axisItems(kit, list) {
 
 /** @param {Kit} kit @param {AxisList} list @param {any[]} axes @param {number} index */
 function axisItem(kit, list, axes, index) {
-  const { samples, become, append, block, item, kindSelect } = kit;
+  const { samples, become, append, block, item, kindSelect, part } = kit;
   const axis = axes[index];
   const path = `${list.axes}[${index}]`;
   const movesPath = `${path}.moves`;
@@ -48,7 +50,7 @@ function axisItem(kit, list, axes, index) {
     button("Copy", `Copy ${name}`, () => addAxis(kit, list, (now) => now[index]), axes.length >= MAX_CHANNELS),
     button("✕", `Remove ${name}`, () => removeAxis(kit, list, index), axes.length <= list.minAxes),
   );
-  const fields = block(`${path}.mechanics.${kind}`, fieldsOfKind("Mechanics", kind));
+  const mechanics = block(`${path}.mechanics.${kind}`, fieldsOfKind("Mechanics", kind));
   const moves = axis.moves.map((/** @type {any} */ _, /** @type {number} */ i) =>
     moveItem(kit, movesPath, axis.moves, i),
   );
@@ -58,11 +60,27 @@ function axisItem(kit, list, axes, index) {
     () => append(movesPath, (last) => structuredClone(last ?? { cosine: samples.moves.cosine })),
     axis.moves.length >= maxLengthOf("Axis", "moves"),
   );
-  return item(`Axis ${index} · channel ${index}`, path, [head, ...fields, ...moves, add], `Mechanics.${kind}`);
+  const shaper = choiceItem(kit, `${path}.input_shaper`, "Input shaper", {
+    group: "InputShaper",
+    samples: samples.shapers,
+    term: "Axis.input_shaper",
+    empty: "not shaped",
+  });
+  const limits = part(`Limits and shaper of ${name}`, Boolean(axis.input_shaper), [
+    ...block(`${path}.limits`, fields("AxisLimits")),
+    shaper,
+  ]);
+  return item(
+    `Axis ${index} · channel ${index}`,
+    path,
+    [head, ...mechanics, ...moves, add, limits],
+    `Mechanics.${kind}`,
+  );
 }
 
 /** @param {Kit} kit @param {string} movesPath @param {any[]} moves @param {number} index */
-function moveItem({ samples, become, raise, remove, block, item, kindSelect }, movesPath, moves, index) {
+function moveItem(kit, movesPath, moves, index) {
+  const { samples, become, raise, remove, item, kindSelect } = kit;
   const path = `${movesPath}[${index}]`;
   const kind = Object.keys(moves[index])[0];
   const head = element(
@@ -75,8 +93,22 @@ function moveItem({ samples, become, raise, remove, block, item, kindSelect }, m
     button("✕", `Remove move ${index + 1}`, () => remove(movesPath, index), moves.length === 1),
   );
   const note = element("p", { class: "item-note", "data-note": path });
-  const fields = block(`${path}.${kind}`, pointsFirst(fieldsOfKind("Move", kind)));
-  return item(`Move ${index + 1}`, path, [head, ...fields, note], `Move.${kind}`);
+  return item(`Move ${index + 1}`, path, [head, ...moveFields(kit, path, kind), note], `Move.${kind}`);
+}
+
+/** The fields of a move. @param {Kit} kit @param {string} path @param {string} kind */
+export function moveFields(kit, path, kind) {
+  const group = groupOfKind("Move", kind);
+  return [
+    ...choices(group).map(({ name, label, group: inner }) =>
+      choiceItem(kit, `${path}.${kind}.${name}`, label, {
+        group: inner,
+        samples: kit.samples.targets,
+        term: `${group}.${name}`,
+      }),
+    ),
+    ...kit.block(`${path}.${kind}`, pointsFirst(fieldsOfKind("Move", kind))),
+  ];
 }
 
 /** Adds an axis, and a channel if needed. @param {Kit} kit @param {AxisList} list @param {(axes: any[]) => any} templateOf  The axis to copy. */
@@ -86,8 +118,15 @@ function addAxis({ change }, list, templateOf) {
     const axes = get(scenario, list.axes) ?? [];
     const grown = [...axes, structuredClone(templateOf(axes))];
     const channels = Math.max(Number(get(scenario, path)) || 1, grown.length);
-    return set(set(scenario, path, channels), list.axes, grown);
+    return withGroups(set(set(scenario, path, channels), list.axes, grown), list, withAxis);
   });
+}
+
+/** Changes the groups of moves of the first controller. @param {any} scenario @param {AxisList} list @param {(groups: any[]) => any[]} change */
+function withGroups(scenario, list, change) {
+  const path = list.axes.replace(/axes$/, "groups");
+  const groups = get(scenario, path);
+  return groups ? set(scenario, path, change(groups)) : scenario;
 }
 
 /** @param {Kit} kit @param {AxisList} list @param {number} index */
@@ -108,7 +147,7 @@ function removeAxis({ change, now }, list, index) {
     "",
     (scenario) => {
       const remaining = get(scenario, list.axes).toSpliced(index, 1);
-      const without = set(scenario, list.axes, remaining);
+      const without = withGroups(set(scenario, list.axes, remaining), list, (groups) => withoutAxis(groups, index));
       if (!list.axes.startsWith("source")) return without;
       const selected = without.analysis.axis;
       return set(without, "analysis.axis", Math.min(selected > index ? selected - 1 : selected, remaining.length - 1));

@@ -10,7 +10,8 @@ import { isList, setLists } from "./values.js";
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {import("./control.js").Control} Control */
 /**
- * @typedef {{moves: {[kind: string]: any}, mechanics: {[kind: string]: any}, sources: {[kind: string]: any},
+ * @typedef {{moves: {[kind: string]: any}, targets: {[kind: string]: any}, shapers: {[kind: string]: any},
+ *   motion_groups: {[kind: string]: any}, mechanics: {[kind: string]: any}, sources: {[kind: string]: any},
  *   glitch: any, send: any, controller: any, rules: any, motor: any,
  *   plant: any, protection: any, plant_motor: any,
  *   groups: {[kind: string]: any}, until: any, homing: any, soft_limits: any, axis: any, input: any}} Samples  One item of each kind with its defaults.

@@ -48,7 +48,18 @@ export const maxLengthOf = (group, name) => row(group, name).most ?? Number.POSI
 
 /** A field of a group for the form. @param {string} group @param {string} name @returns {Field} */
 export function field(group, name) {
-  const { label, type, unit, when, ...texts } = row(group, name);
+  return fieldOf(group, row(group, name));
+}
+
+/** The field of an item of a list. @param {string} group @param {string} name @param {number} index @param {string} label @returns {Field} */
+export function itemField(group, name, index, label) {
+  const list = row(group, name);
+  const { list: type } = /** @type {{list: Type}} */ (withoutOptional(list.type));
+  return { ...fieldOf(group, { ...list, type }), key: `${name}[${index}]`, label, initial: null };
+}
+
+/** @param {string} group @param {Row} row @returns {Field} */
+function fieldOf(group, { name, label, type, unit, when, ...texts }) {
   // An optional field can also be empty.
   const words = [...(isOptional(type) ? [{ name: "", label: texts.empty ?? "none" }] : []), ...wordsOf(type)];
   const units = quantity(withoutOptional(type));
@@ -84,6 +95,25 @@ export function fieldsOfKind(group, kind) {
   return fields(groupIn(row(group, kind).type) ?? "");
 }
 
+/** The fields of a kind with their path below that of the choice. A kind that is a quantity has no fields of its own. @param {string} group @param {string} kind @returns {{path: string, fields: Field[]}} */
+export function kindFields(group, kind) {
+  const { type } = row(group, kind);
+  return quantity(type)
+    ? { path: "", fields: [field(group, kind)] }
+    : { path: `.${kind}`, fields: fieldsOfKind(group, kind) };
+}
+
+/** The fields of a group that are choices of kinds with their own fields. @param {string} group @returns {{name: string, label: string, group: string}[]} */
+export function choices(group) {
+  return schema.groups[group].fields.flatMap(({ name, label, type }) => {
+    const inner = groupIn(type) ?? "";
+    return schema.groups[inner]?.choice && !quantity(type) ? [{ name, label, group: inner }] : [];
+  });
+}
+
+/** The group of a kind. @param {string} group @param {string} kind */
+export const groupOfKind = (group, kind) => groupIn(row(group, kind).type) ?? "";
+
 /** The help text of a field or a kind. @param {string} id  Its group and its name, such as `Bus.slots`. @returns {Term | undefined} */
 export function termOf(id) {
   const [group, name] = id.split(".");
@@ -117,6 +147,9 @@ export function samples() {
     );
   return {
     moves: defaultsByKind("Move"),
+    targets: defaultsByKind("Target"),
+    shapers: defaultsByKind("InputShaper"),
+    motion_groups: defaultsByKind("Group"),
     mechanics: defaultsByKind("Mechanics"),
     sources: defaultsByKind("Source"),
     glitch: defaultOf("Glitch"),

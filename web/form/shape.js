@@ -24,12 +24,14 @@ export function shapeOf({ source, controllers, driver_timing: driver, line, plan
     axes.map((axis) => [
       Object.keys(axis.mechanics)[0],
       Boolean(axis.motor),
-      ...axis.moves.map((/** @type {any} */ move) => Object.keys(move)[0]),
+      kindOf(axis.input_shaper),
+      ...axis.moves.map((/** @type {any} */ move) => [kindOf(move), kindOf(move.retarget?.target)]),
     ]);
   return JSON.stringify([
     Object.keys(source)[0],
     hasNoLine({ source }),
     kinds(source.motion?.axes ?? []),
+    source.motion?.groups?.map(groupShape),
     source.line?.sends?.length,
     source.segments?.channels?.length,
     source.standalone?.map(panelShape),
@@ -42,8 +44,17 @@ export function shapeOf({ source, controllers, driver_timing: driver, line, plan
 
 /** @param {any} panel */
 function panelShape({ groups, home, soft_limits, axis, inputs }) {
-  const groupShape = (/** @type {any} */ group) => [group, group.move?.until, group.profile?.motion].map(kindOf);
-  return [groups?.map(groupShape), Boolean(home), Boolean(soft_limits), Boolean(axis), inputs?.length];
+  const programShape = (/** @type {any} */ group) => [group, group.move?.until, group.profile?.motion].map(kindOf);
+  return [groups?.map(programShape), Boolean(home), Boolean(soft_limits), Boolean(axis), inputs?.length];
+}
+
+/** @param {any} group  Moves that start and end together. */
+function groupShape({ time, line, way_points }) {
+  return [
+    time?.moves.map((/** @type {any} */ { move }) => [kindOf(move), kindOf(move.retarget?.target)]),
+    line?.distances.length,
+    way_points?.points.map((/** @type {any} */ { positions, speeds }) => [positions.length, speeds?.length]),
+  ];
 }
 
 /** @param {any} part */

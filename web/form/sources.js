@@ -1,5 +1,5 @@
 /** The kinds of sources, each with its part of the form and its initial content. */
-import { element, setText } from "../dom.js";
+import { button, element, setText } from "../dom.js";
 import { axisItems } from "./axes.js";
 import { packetLines } from "./fields.js";
 import { field } from "./schema.js";
@@ -21,9 +21,10 @@ import { samplePackets, sampleSegments, sampleSends } from "./source_kinds.js";
 export const SOURCES = {
   motion: {
     fresh: (_, samples) => structuredClone(samples.sources.motion),
-    form: (kit) => [
+    form: (kit, scenario) => [
       kit.row("source.motion.engine", field("Motion", "engine")),
       ...axisItems(kit, { axes: "source.motion.axes", bus: "bus", suffix: "", minAxes: 1 }),
+      groupPart(kit, scenario),
     ],
     additional: (_, samples) => ({ axes: structuredClone(samples.sources.motion.axes) }),
     additionalForm: (kit, index) =>
@@ -69,6 +70,21 @@ export const SOURCES = {
     additionalForm: () => [],
   },
 };
+
+/** Groups of moves; their fields are loaded when there is one. @param {Kit} kit @param {Scenario} scenario */
+function groupPart(kit, { source }) {
+  const count = source.motion.groups?.length ?? 0;
+  const add = () => kit.change("source.motion", (motion) => ({ ...motion, groups: [firstGroup(motion.axes.length)] }));
+  return kit.part("Groups of moves", count > 0, [
+    kit.errorOf("source.motion.groups"),
+    ...(count > 0
+      ? kit.loadItems((parts) => parts.groupItems(kit))
+      : [button("Add group", "Add a group of moves", add)]),
+  ]);
+}
+
+/** A straight line of all axes. @param {number} axes */
+const firstGroup = (axes) => ({ line: { distances: Array(axes).fill({ steps: 1000 }), profile: "jerk_limited" } });
 
 /** The form of stand-alone controllers, once it is needed. @type {typeof import("./standalone.js") | null} */
 let standAlone = null;

@@ -317,7 +317,14 @@ fn experiments_are_saved_by_name_and_undo_survives_a_reload() -> Result<()> {
         page.until("document.getElementById('experiment-save').offsetWidth > 0").await?;
         page.until("!document.getElementById('experiment-save').disabled").await?;
         page.until("document.getElementById('experiments-export').disabled").await?;
-        page.press("#experiment-name", &format!("Rig{ENTER}")).await?;
+        // A name that is typed stays while the panel is closed.
+        page.press("#experiment-name", "Rig").await?;
+        page.click("#experiments").await?;
+        page.until("!document.getElementById('experiments-panel').checkVisibility()").await?;
+        page.click("#experiments").await?;
+        page.until_equal("document.getElementById('experiment-name').value", &serde_json::json!("Rig"))
+            .await?;
+        page.press("#experiment-name", &format!("{ENTER}")).await?;
         page.until_equal(NAMES, &serde_json::json!(["Rig"])).await?;
         page.click("#experiment-new").await?;
         page.until_digest(&Known::of("{}")?.digest).await?;

@@ -1,13 +1,13 @@
 //! What helps people: the guide, terms, help, remedies, panes; and what they rely on: a history of 50 steps, every
 //! digit of a number.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use anyhow::{Context, Result, ensure};
 use serde_json::{Value, json};
 use stepscope_core::{
     motion::{grouped, moves::Move},
-    scenario::{Kinds, Scenario, Source, presets::PRESETS},
+    scenario::{Kinds, Scenario, Source, presets::PRESETS, schema::describe},
     sim::BUDGET_RECORDS,
 };
 
@@ -77,9 +77,29 @@ fn a_new_visitor_is_offered_the_guide_once_and_it_points_at_what_is_there() -> R
     })
 }
 
-/// The fields that the form has for each kind of move.
-const FIELDS: &str = "import('./form/schema.js').then(({ labels, fieldsOfKind }) =>
-    Object.fromEntries(Object.keys(labels('Move')).map((kind) => [kind, fieldsOfKind('Move', kind).map(({ key }) => key)])))";
+/// The names of the fields in the form below a path, sorted.
+fn names_below(path: &str) -> String {
+    format!(
+        "[...new Set([...document.querySelectorAll('#fields [data-path^=\"{path}.\"]')]
+             .map((node) => /^\\w+/.exec(node.dataset.path.slice({}))[0]))].sort()",
+        path.len() + 1
+    )
+}
+
+/// The fields of a group of the scenario's schema, sorted.
+fn names_of(schema: &Value, group: &str) -> Value {
+    let fields = schema["groups"][group]["fields"].as_array().into_iter().flatten();
+    let names: BTreeSet<&str> = fields.filter_map(|field| field["name"].as_str()).collect();
+    json!(names)
+}
+
+/// Kinds of a choice of the schema, each with its group of fields.
+fn kinds_of<'a>(schema: &'a Value, choice: &str) -> impl Iterator<Item = Option<(&'a str, &'a str)>> {
+    schema["groups"][choice]["fields"].as_array().into_iter().flatten().map(|kind| {
+        let group = &kind["type"]["group"];
+        Some((kind["name"].as_str()?, group.as_str()?))
+    })
+}
 
 #[test]
 fn every_field_of_the_form_is_explained() -> Result<()> {
@@ -105,17 +125,86 @@ fn every_field_of_the_form_is_explained() -> Result<()> {
 
 #[test]
 fn every_kind_of_move_has_a_form_with_all_of_its_fields() -> Result<()> {
-    in_sources(|page| async move {
+    const MOVE: &str = "source.motion.axes[0].moves[1]";
+    in_browser(|page| async move {
+        let schema: Value = serde_json::from_str(&describe())?;
         page.open("").await?;
-        let found: BTreeMap<String, BTreeSet<String>> = page.eval(FIELDS).await?;
-        for kind in Move::KINDS {
-            let json = format!(r#"{{"source":{{"motion":{{"axes":[{{"moves":[{{"{kind}":{{}}}}]}}]}}}}}}"#);
-            let full: Value = serde_json::from_str(&Known::of(&json)?.scenario.to_json())?;
-            let fields = &full["source"]["motion"]["axes"][0]["moves"][0][kind];
-            let fields: BTreeSet<String> = fields.as_object().context("a map")?.keys().cloned().collect();
-            assert_eq!(found.get(*kind), Some(&fields), "{kind}");
+        // A new target needs a move before it.
+        page.click("[aria-label='Add move to axis 0']").await?;
+        let mut kinds = 0;
+        for kind in kinds_of(&schema, "Move") {
+            let (kind, group) = kind.context("a kind of move has a group of fields")?;
+            page.choose(&field(&format!("{MOVE}#kind")), kind).await?;
+            let names = names_below(&format!("{MOVE}.{kind}"));
+            page.until_equal(&names, &names_of(&schema, group)).await?;
+            // A slider counts its steps from its minimum, so that has to be a whole number of them, and is near its field.
+            let wrong: Vec<String> = page
+                .eval(
+                    "[...document.querySelectorAll('#fields [type=range]:enabled')].map((slider) => [slider, slider.closest('.field').querySelector('input')])
+                     .filter(([{ min, step, value }, input]) => Math.abs(min / step - Math.round(min / step)) > 1e-9 || Math.abs(value - input.value) > step / 2)
+                     .map(([, input]) => input.dataset.path)",
+                )
+                .await?;
+            assert_eq!(wrong, [""; 0], "{kind}");
+            kinds += 1;
         }
-        assert_eq!(found.len(), Move::KINDS.len());
+        assert_eq!(kinds, Move::KINDS.len());
+        Ok(())
+    })
+}
+
+#[test]
+fn targets_shapers_limits_and_groups_have_a_form_with_all_of_their_fields() -> Result<()> {
+    const AXIS: &str = "source.motion.axes[0]";
+    const GROUP: &str = "source.motion.groups[0]";
+    let check = async |page: &Session, path: &str, choice: &str, schema: &Value| -> Result<()> {
+        for kind in kinds_of(schema, choice) {
+            let (kind, group) = kind.context("a kind has a group of fields")?;
+            page.choose(&field(&format!("{path}#kind")), kind).await?;
+            if kind == "position" {
+                page.until(&format!("document.querySelector('{}')", field(&format!("{path}.position"))))
+                    .await?;
+            } else {
+                page.until_equal(&names_below(&format!("{path}.{kind}")), &names_of(schema, group)).await?;
+            }
+            page.ready().await?;
+            assert_eq!(page.text("#problems").await?, "", "{kind}");
+        }
+        Ok(())
+    };
+    in_browser(move |page| async move {
+        let schema: Value = serde_json::from_str(&describe())?;
+        page.open("").await?;
+        page.click("[aria-label='Add move to axis 0']").await?;
+        page.choose(&field(&format!("{AXIS}.moves[1]#kind")), "retarget").await?;
+        check(&page, &format!("{AXIS}.moves[1].retarget.target"), "Target", &schema).await?;
+        page.js::<()>(
+            "for (const part of document.querySelectorAll('#fields details')) part.open = true; return null;",
+            vec![],
+        )
+        .await?;
+        page.until_equal(&names_below(&format!("{AXIS}.limits")), &names_of(&schema, "AxisLimits")).await?;
+        check(&page, &format!("{AXIS}.input_shaper"), "InputShaper", &schema).await?;
+        page.choose(&field(&format!("{AXIS}.input_shaper#kind")), "").await?;
+        page.click("[aria-label='Add a group of moves']").await?;
+        page.until(&format!("document.querySelector('{}')", field(&format!("{GROUP}#kind")))).await?;
+        check(&page, GROUP, "Group", &schema).await?;
+        page.until_equal(
+            &names_below(&format!("{GROUP}.way_points.points[0]")),
+            &json!(["positions", "speeds"]),
+        )
+        .await?;
+        page.choose(&field(&format!("{GROUP}#kind")), "time").await?;
+        page.until_equal(&names_below(&format!("{GROUP}.time.moves[0]")), &json!(["axis", "move"])).await?;
+        // Groups follow the number of axes.
+        page.choose(&field(&format!("{GROUP}#kind")), "line").await?;
+        page.fill(&format!("{GROUP}.line.distances[0]"), "700").await?;
+        page.click("[aria-label='Copy axis 0']").await?;
+        page.fill(&format!("{GROUP}.line.distances[1]"), "-300").await?;
+        page.click("[aria-label='Remove axis 0']").await?;
+        page.ready().await?;
+        assert_eq!(page.field(&format!("{GROUP}.line.distances[0]")).await?.value, "-300");
+        assert_eq!(page.text("#problems").await?, "");
         Ok(())
     })
 }

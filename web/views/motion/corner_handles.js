@@ -34,7 +34,7 @@ export function createCornerHandles(canvas, scale, { dispatch, now }, onRelease)
   let plot = null;
   /** @type {Range} */
   let range = { min: 0, max: 1 };
-  /** The dragged handle: where it was pressed, the distance from its center, and the axes, which stay. @type {({node: HTMLElement, place: Place, press: PointerEvent, by: Point, isMoved: boolean} & Axes) | null} */
+  /** The dragged handle, where it was pressed, and its center and the axes at that time: they stay even if the chart moves. @type {({node: HTMLElement, place: Place, press: PointerEvent, center: Point, area: Plot, isMoved: boolean} & Axes) | null} */
   let drag = null;
 
   /** @param {number} index */
@@ -46,9 +46,8 @@ export function createCornerHandles(canvas, scale, { dispatch, now }, onRelease)
       press.stopPropagation();
       press.preventDefault();
       node.setPointerCapture(press.pointerId);
-      const [place, center, pointer] = [places[index], centerOf(places[index]), pointOf(press)];
-      const by = { x: pointer.x - center.x, y: pointer.y - center.y };
-      drag = { node, place, press, by, isMoved: false, range, window: shown(now()) };
+      const [place, center] = [places[index], centerOf(places[index])];
+      drag = { node, place, press, center, area: plot, isMoved: false, range, window: shown(now()) };
     });
     node.addEventListener("pointermove", (event) => {
       if (!drag) return;
@@ -59,7 +58,8 @@ export function createCornerHandles(canvas, scale, { dispatch, now }, onRelease)
     node.addEventListener("pointerup", (event) => {
       event.stopPropagation();
       // A click at a handle is a click at the chart.
-      if (drag && !drag.isMoved && plot) setCursor({ dispatch, now }, event, cycleAt(now(), plot, pointOf(event).x));
+      const x = event.clientX - canvas.getBoundingClientRect().left;
+      if (drag && !drag.isMoved && plot) setCursor({ dispatch, now }, event, cycleAt(now(), plot, x));
     });
     node.addEventListener("pointercancel", live.cancel);
     node.addEventListener("lostpointercapture", () => {
@@ -72,20 +72,13 @@ export function createCornerHandles(canvas, scale, { dispatch, now }, onRelease)
     return node;
   }
 
-  /** @param {PointerEvent} event @returns {Point} */
-  function pointOf({ clientX, clientY }) {
-    const { left, top } = canvas.getBoundingClientRect();
-    return { x: clientX - left, y: clientY - top };
-  }
-
   /** @param {PointerEvent} event */
-  function follow(event) {
-    if (!drag || !plot) return;
-    const { x, y } = pointOf(event);
-    const { place, by, window } = drag;
+  function follow({ clientX, clientY }) {
+    if (!drag) return;
+    const { place, center, press, area, window } = drag;
     const clock = now().result?.summary.clock_hz ?? 1;
-    const at = valueAt(window, plot, x - by.x) / clock;
-    const height = (y - by.y - plot.top) / (plot.bottom - plot.top);
+    const at = valueAt(window, area, center.x + clientX - press.clientX) / clock;
+    const height = (center.y + clientY - press.clientY - area.top) / (area.bottom - area.top);
     const top = ((drag.range.max - height * (drag.range.max - drag.range.min)) / scale()) * place.sign;
     const fields = movedCorner(place.move, place.rates, {
       ramp_s: place.isLast ? place.end_s - at : at - place.start_s,
