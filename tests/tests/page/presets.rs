@@ -1,4 +1,4 @@
-//! The documents' own experiments, one after the other.
+//! The experiments of the papers, one after another.
 
 use anyhow::{Context, Result, ensure};
 use serde_json::json;
@@ -14,7 +14,7 @@ use stepscope_core::{
 use crate::{bench::in_browser, native::Known, session::Session};
 
 #[test]
-fn every_preset_opens_and_its_digest_link_and_distortion_are_the_cores() -> Result<()> {
+fn digests_links_and_distortions_of_presets_match_the_core() -> Result<()> {
     in_browser(|page| async move {
         page.open("").await?;
         page.click("#preset").await?;
@@ -22,7 +22,7 @@ fn every_preset_opens_and_its_digest_link_and_distortion_are_the_cores() -> Resu
         let offered: Vec<String> = page
             .eval("[...document.querySelectorAll('#gallery [data-entry]')].map((card) => card.dataset.entry)")
             .await?;
-        // Task by task; those with a plant are looked at in `motor`, those with a panel in `panel`.
+        // Task by task; presets with a plant are tested in `motor`, those with a panel in `panel`.
         let panels = CONTROLLER_PRESETS.iter().chain(CONTROLLER_PLANT_PRESETS);
         let all: Vec<&Preset> = PRESETS.iter().chain(PLANT_PRESETS).chain(panels).collect();
         let mut tasks: Vec<Task> = Vec::new();
@@ -35,7 +35,7 @@ fn every_preset_opens_and_its_digest_link_and_distortion_are_the_cores() -> Resu
         for task in tasks {
             grouped.extend(all.iter().filter(|preset| preset.task == task).map(|preset| preset.id));
         }
-        // Below them those that were recorded; see `recording`.
+        // Below them the recordings; see `recording`.
         grouped.extend(SAMPLES.iter().map(|sample| sample.id));
         assert_eq!(offered, grouped);
         page.click("#gallery [aria-label=Close]").await?;
@@ -78,7 +78,7 @@ fn percent_after(text: &str, word: &str) -> Result<f64> {
     number.trim().parse().with_context(|| format!("`{text}`"))
 }
 
-/// Holds the distortion that is shown against the core's; whether there is one to be shown.
+/// Compares the visible distortion with the core's; returns whether there is one.
 async fn distortion(page: &Session, preset: &Preset, known: &Known) -> Result<bool> {
     let analysis = &known.scenario.analysis;
     let Some(plan) = known.experiment.plans().get(usize::from(analysis.axis)) else { return Ok(false) };

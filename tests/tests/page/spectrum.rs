@@ -1,5 +1,5 @@
-//! The spectrum: it loads when there is room for it, every harmonic is in its table, and its frequencies are zoomed as the
-//! time is, on a linear axis or a logarithmic one.
+//! The spectrum: it loads when it is visible, each harmonic is in its table, and frequencies can be zoomed like the
+//! time, on a linear or a logarithmic axis.
 
 use anyhow::{Context, Result, ensure};
 use fantoccini::actions::{
@@ -24,7 +24,7 @@ async fn open(page: &Session) -> Result<()> {
     page.ready().await
 }
 
-/// The view has all of the room, and with it its fields, and chart and table beside each other.
+/// Maximizes the view, which then shows its fields, and chart and table next to each other.
 async fn open_large(page: &Session) -> Result<()> {
     open(page).await?;
     page.click("#view-spectrum .most").await?;
@@ -33,7 +33,7 @@ async fn open_large(page: &Session) -> Result<()> {
 }
 
 #[test]
-fn the_spectrum_loads_when_there_is_room_for_it() -> Result<()> {
+fn the_spectrum_loads_when_it_is_visible() -> Result<()> {
     in_sources(|page| async move {
         let loaded = "performance.getEntriesByType('resource').some(({ name }) => name.includes('/spectrum/spectrum'))";
         page.open("").await?;
@@ -46,14 +46,14 @@ fn the_spectrum_loads_when_there_is_room_for_it() -> Result<()> {
     })
 }
 
-/// What of the table is in the document.
+/// The visible part of the table.
 #[derive(Debug, Deserialize)]
 struct Table {
     /// Numbers of its rows.
     numbers: Vec<u32>,
-    /// Rows and cells of which something is cut off.
+    /// Rows and cells that are partly cut off.
     cut: Vec<String>,
-    /// Rows that the table says it has, without the head.
+    /// The table's stated number of rows, without the header.
     rows: u32,
 }
 
@@ -66,7 +66,7 @@ const TABLE: &str = "
     return { numbers: rows.map(({ dataset }) => Number(dataset.n)), cut: [...outside, ...narrow].map(({ textContent }) => textContent),
         rows: Number(table.ariaRowCount) - 1 };";
 
-/// The table's rows follow each other, whole, and are fewer than all.
+/// Checks that the rows are consecutive and complete, and fewer than all; returns their numbers.
 async fn table(page: &Session, place: &str) -> Result<Vec<u32>> {
     let found: Table = page.js(TABLE, vec![]).await?;
     ensure!(found.rows == 1000 && found.cut.is_empty(), "{place}: {found:?}");
@@ -90,7 +90,7 @@ fn every_harmonic_is_in_the_table_in_whole_rows() -> Result<()> {
             page.press("#harmonics-scroll", &END.to_string()).await?;
             page.until("document.querySelector('#harmonics tr.highlighted')?.dataset.n === '1000'").await?;
             ensure!(table(&page, &place).await?.last() == Some(&1000), "{place} ends with the highest");
-            // The scroll bar comes to what lies between.
+            // The scroll bar reaches the rows between.
             page.js::<()>("const scroll = document.getElementById('harmonics-scroll'); scroll.scrollTop = scroll.scrollHeight / 2;", vec![]).await?;
             page.until("[...document.querySelectorAll('#harmonics tbody tr')].some(({ dataset }) => dataset.n > 450 && dataset.n < 550)")
                 .await?;
@@ -100,7 +100,7 @@ fn every_harmonic_is_in_the_table_in_whole_rows() -> Result<()> {
     })
 }
 
-/// The frequencies on show as the fields have them, in Hz.
+/// The visible frequencies in Hz, from the fields.
 async fn shown(page: &Session) -> Result<(f64, f64)> {
     let texts: (String, String) = page
         .eval(
@@ -115,14 +115,14 @@ async fn shown(page: &Session) -> Result<(f64, f64)> {
     Ok((hz(&texts.0)?, hz(&texts.1)?))
 }
 
-/// Waits for other frequencies than these.
+/// Waits for other frequencies.
 async fn changed(page: &Session, before: (f64, f64)) -> Result<(f64, f64)> {
-    // A text that was refused stands in its field until there are other frequencies.
+    // A refused text stays in its field until the frequencies change.
     let look = async || Ok(shown(page).await.ok().filter(|now| *now != before));
     page.eventually(&format!("other frequencies than {before:?}"), look).await
 }
 
-/// Where the chart lies in the window.
+/// Position of the chart in the window.
 async fn place(page: &Session) -> Result<(f64, f64, f64)> {
     page.eval(
         "(({ x, y, width, height }) => [x, y + height / 2, width])(document.getElementById('spectrum-chart').getBoundingClientRect())",
@@ -131,7 +131,7 @@ async fn place(page: &Session) -> Result<(f64, f64, f64)> {
 }
 
 #[test]
-fn frequencies_are_zoomed_by_wheel_box_keys_buttons_and_fields_and_back() -> Result<()> {
+fn every_zoom_control_changes_frequencies_and_fit_restores_them() -> Result<()> {
     in_browser(|page| async move {
         open_large(&page).await?;
         let whole = shown(&page).await?;
@@ -174,7 +174,7 @@ fn frequencies_are_zoomed_by_wheel_box_keys_buttons_and_fields_and_back() -> Res
         assert_eq!(shown(&page).await?, (0.5, 5.0));
         page.press("#spectrum-from", &format!("{CONTROL}a{RELEASE}9{ENTER}")).await?;
         page.until("document.getElementById('spectrum-error').textContent.includes('above')").await?;
-        // A harmonic that is gone to by keys is brought into view.
+        // A harmonic selected by keys is scrolled into view.
         page.press("#spectrum-pane", &END.to_string()).await?;
         let followed = changed(&page, (0.5, 5.0)).await?;
         ensure!(followed.0 < 250.0 && followed.1 >= 250.0, "{followed:?} has harmonic 1000");
@@ -182,12 +182,12 @@ fn frequencies_are_zoomed_by_wheel_box_keys_buttons_and_fields_and_back() -> Res
     })
 }
 
-/// Keeps the text of the file that is saved, in place of a download.
+/// Stores the saved file's text instead of downloading it.
 const KEEP: &str = "const make = URL.createObjectURL; URL.createObjectURL = (blob) => { window.last = blob; return make.call(URL, blob); };
     HTMLAnchorElement.prototype.click = () => { window.saved = window.last; };";
 
 #[test]
-fn frequencies_are_linear_or_logarithmic_and_the_axes_are_named() -> Result<()> {
+fn frequencies_are_linear_or_logarithmic_and_axes_are_named() -> Result<()> {
     in_browser(|page| async move {
         page.before_scripts(KEEP).await?;
         open_large(&page).await?;
@@ -225,7 +225,7 @@ fn frequencies_are_linear_or_logarithmic_and_the_axes_are_named() -> Result<()> 
         for label in ["1 Hz", "10 Hz", "100 Hz"] {
             ensure!(says(&svg, label), "{label} in {svg}");
         }
-        // Zoomed to less than a decade it has round numbers, too.
+        // Zoomed to less than a decade, it has round numbers, too.
         for (field, text) in [("#spectrum-to", "9.5"), ("#spectrum-from", "8.6")] {
             page.press(field, &format!("{CONTROL}a{RELEASE}{text}{ENTER}")).await?;
         }

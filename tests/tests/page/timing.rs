@@ -1,4 +1,4 @@
-//! The driver timing check on the page: counts, margins, and the way from one violation to the next.
+//! The driver timing check on the page: counts, margins, and steps through the violations.
 
 use anyhow::{Result, ensure};
 use serde_json::json;
@@ -18,7 +18,7 @@ async fn until_says(page: &Session, what: &str) -> Result<()> {
 }
 
 #[test]
-fn violations_are_counted_and_gone_through_one_by_one() -> Result<()> {
+fn violations_are_counted_and_visited_one_by_one() -> Result<()> {
     in_browser(|page| async move {
         let preset = PRESETS.iter().find(|preset| preset.id == "driver-timing-broken").expect("a preset");
         let known = Known::preset(preset)?;
@@ -65,7 +65,7 @@ fn violations_are_counted_and_gone_through_one_by_one() -> Result<()> {
 }
 
 #[test]
-fn a_driver_and_rules_of_ones_own_are_chosen_and_taken_back() -> Result<()> {
+fn drivers_and_custom_rules_can_be_selected_and_undone() -> Result<()> {
     in_browser(|page| async move {
         let known = Known::of("{}")?;
         page.open("").await?;
