@@ -66,17 +66,9 @@ fn wild_move() -> impl Strategy<Value = Move> {
                 Move::Cosine(Cosine { distance, duration_s, ramp_s, method, slice_s, ..Cosine::default() })
             }
         ),
-        (distance.clone(), number(), number(), ramp_shape(), number(), number()).prop_map(
-            |(distance, duration_s, ramp_s, shape, sigmoid_range, time_constants)| {
-                Move::Ramps(Ramps {
-                    distance,
-                    duration_s,
-                    ramp_s,
-                    shape,
-                    sigmoid_range,
-                    time_constants,
-                    ..Ramps::default()
-                })
+        (distance.clone(), number(), number(), ramp_shape(), number()).prop_map(
+            |(distance, duration_s, ramp_s, shape, parameter)| {
+                Move::Ramps(Ramps { distance, duration_s, ramp_s, ..Ramps::shaped(shape, parameter) })
             }
         ),
         (distance.clone(), speed.clone(), speed.clone(), number(), method, any::<u32>()).prop_map(

@@ -306,6 +306,18 @@ pub enum RampShape {
     Exponential,
 }
 
+impl Ramps {
+    /// The default move with another shape; `parameter` is the range of a sigmoid, or the time constants of an exponential.
+    pub fn shaped(shape: RampShape, parameter: f64) -> Self {
+        let ramps = Self { shape, ..Self::default() };
+        match shape {
+            RampShape::Sigmoid => Self { sigmoid_range: parameter, ..ramps },
+            RampShape::Exponential => Self { time_constants: parameter, ..ramps },
+            RampShape::Bezier | RampShape::Straight => ramps,
+        }
+    }
+}
+
 /// Maximum points per move.
 pub const MAX_POINTS: usize = 4096;
 

@@ -25,19 +25,9 @@ fn speed(steps_s: f64) -> Option<Speed> {
 
 fn moves() -> Vec<Move> {
     let ramps = |shape, start_speed, end_speed| {
-        let (sigmoid_range, time_constants) = (7.0, 3.0);
-        let (duration_s, ramp_s) = (0.4, 0.15);
-        let distance = steps(-1500.0);
-        Move::Ramps(Ramps {
-            distance,
-            duration_s,
-            ramp_s,
-            shape,
-            sigmoid_range,
-            time_constants,
-            start_speed,
-            end_speed,
-        })
+        let (distance, duration_s, ramp_s) = (steps(-1500.0), 0.4, 0.15);
+        let shaped = Ramps::shaped(shape, 5.0);
+        Move::Ramps(Ramps { distance, duration_s, ramp_s, start_speed, end_speed, ..shaped })
     };
     let points = [(0.0, 0.0), (0.1, 300.0), (0.25, 150.0), (0.3, 160.0), (0.5, -250.0)];
     let points = points.map(|(time_s, position)| Point { time_s, position });

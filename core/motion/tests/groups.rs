@@ -158,3 +158,48 @@ fn a_jump_may_be_as_high_as_the_start_stop_speed() {
         assert_eq!(jumps(start_stop, speeds), refused, "{start_stop}: {speeds:?}");
     }
 }
+
+#[test]
+fn what_a_group_cannot_do_is_refused_with_its_numbers() {
+    let group_move = |axis, r#move| GroupMove { axis, r#move };
+    let constant = || Move::Constant(Constant::default());
+    let time = |moves| Group::Time(TimeGroup { duration_s: None, moves });
+    let way_points = |points: &[(f64, Option<f64>)]| {
+        let points = points.iter().map(|(position, speed)| WayPoint {
+            positions: vec![steps(*position)],
+            speeds: Some(vec![speed.map(Speed::StepsPerSecond)]),
+        });
+        Group::WayPoints(WayPointGroup { points: points.collect() })
+    };
+    let rows = [
+        (time(vec![group_move(1, constant())]), "groups[0].time.moves[0].axis: 1 "),
+        (
+            time(vec![group_move(0, Move::Retarget(Retarget::default()))]),
+            "groups[0].time.moves[0].move.retarget: ",
+        ),
+        (line(&[1.0, 2.0]), "groups[0].line.distances: "),
+        (line(&[0.0]), "groups[0].line.distances: "),
+        (way_points(&[]), "groups[0].way_points.points: "),
+        (way_points(&[(0.0, None)]), "groups[0].way_points.points: "),
+        (way_points(&[(100.0, None), (300.0, Some(50.0))]), "groups[0].way_points.points[1].speeds[0]: 50 "),
+        (way_points(&[(100.0, Some(50.0)), (50.0, None)]), "groups[0].way_points.points[0].speeds[0]: 50 "),
+        (
+            way_points(&[(100.0, Some(-50.0)), (300.0, None)]),
+            "groups[0].way_points.points[0].speeds[0]: a speed of -50 ",
+        ),
+        (
+            way_points(&[(100.0, Some(4001.0)), (300.0, None)]),
+            "groups[0].way_points.points[0].speeds[0]: 4001 ",
+        ),
+        (way_points(&[(1.0, Some(4000.0)), (3000.0, None)]), "groups[0].way_points.points[0].speeds[0]: "),
+    ];
+    for (group, expected) in rows {
+        let found = problems(&[standing()], &[group]);
+        assert!(found.len() == 1 && found[0].starts_with(expected), "{found:?}, expected {expected}");
+    }
+    let twice = time(vec![group_move(0, constant()), group_move(0, constant())]);
+    let found = problems(&[standing(), standing()], &[twice]);
+    assert!(found.len() == 1 && found[0].starts_with("groups[0].time.moves[1].axis: "), "{found:?}");
+    // A given speed of 0 is a stop, also where the axis stands anyway.
+    plan(&[standing()], &[way_points(&[(100.0, Some(0.0)), (300.0, Some(0.0))])]).expect("a plan");
+}

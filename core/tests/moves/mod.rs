@@ -33,16 +33,8 @@ pub(crate) fn sane_move() -> impl Strategy<Value = Move> {
         ),
         (steps.clone(), 0.02..2.0, 0.0..=0.5, ramp_shape(), 0.1..=20.0).prop_map(
             |(distance, duration_s, ramp, shape, parameter)| {
-                let (ramp_s, sigmoid_range, time_constants) = (duration_s * ramp, parameter, parameter);
-                Move::Ramps(Ramps {
-                    distance,
-                    duration_s,
-                    ramp_s,
-                    shape,
-                    sigmoid_range,
-                    time_constants,
-                    ..Ramps::default()
-                })
+                let ramp_s = duration_s * ramp;
+                Move::Ramps(Ramps { distance, duration_s, ramp_s, ..Ramps::shaped(shape, parameter) })
             }
         ),
         (steps.clone(), 100.0..2000.0, 0.0..4000.0, 1.0..1e5, method).prop_map(

@@ -295,18 +295,9 @@ fn own_curve() -> impl Strategy<Value = Move> {
             })
         }),
         (distance.clone(), times, prop::sample::select(shapes.to_vec()), magnitude(0.1, 20.0)).prop_map(
-            |(distance, (duration_s, part), shape, sharp)| {
+            |(distance, (duration_s, part), shape, parameter)| {
                 let ramp_s = duration_s * part;
-                let (sigmoid_range, time_constants) = (sharp, sharp);
-                Move::Ramps(Ramps {
-                    distance,
-                    duration_s,
-                    ramp_s,
-                    shape,
-                    sigmoid_range,
-                    time_constants,
-                    ..Ramps::default()
-                })
+                Move::Ramps(Ramps { distance, duration_s, ramp_s, ..Ramps::shaped(shape, parameter) })
             }
         ),
         (distance.clone(), magnitude(0.5, 1e6), 1.0..100.0_f64, magnitude(1e-3, 1e9), magnitude(1e4, 1e9))

@@ -122,7 +122,7 @@ mod tests {
         Cosine, CosineMethod, JerkLimited, Move, Points, RampShape, Ramps, Sine, SineSegments, Staircase,
         Trapezoid, TrapezoidMethod,
     };
-    use crate::{mechanics::Distance, plan_move};
+    use crate::{mechanics::Distance, mechanics::Speed, plan_move};
     use core::cell::Cell;
 
     /// Deciding in 106 bits takes hundreds of times as long, so an unnecessarily large maximum error costs time.
@@ -139,6 +139,7 @@ mod tests {
         let cosine = |method| {
             Move::Cosine(Cosine { distance: distance(), duration_s, ramp_s, method, ..Cosine::default() })
         };
+        let end_speed = || Some(Speed::StepsPerSecond(431.0));
         let (amplitude, period_s) = (Distance::Steps(499.0), 0.312_345_671);
         let moves = [
             trapezoid(TrapezoidMethod::Exact),
@@ -153,6 +154,8 @@ mod tests {
             Move::Sine(Sine { amplitude, period_s, periods: 2 }),
             Move::SineSegments(SineSegments { period_s, periods: 2, ..SineSegments::default() }),
             Move::JerkLimited(JerkLimited { distance: distance(), ..JerkLimited::default() }),
+            Move::JerkLimited(JerkLimited { end_speed: end_speed(), ..JerkLimited::default() }),
+            Move::Cosine(Cosine { end_speed: end_speed(), duration_s, ramp_s, ..Cosine::default() }),
             Move::Points(Points::default()),
         ];
         for given in moves {

@@ -92,15 +92,8 @@ fn every_step_of_ramps_is_in_its_exact_cycle() {
         let moves = MOVES.into_iter().filter(|(count, ..)| count.abs() < if slow { 100 } else { 1000 });
         for (count, duration_s, ramp_s) in moves {
             let count = if slow { count.clamp(-9, 9) } else { count };
-            let given = Ramps {
-                distance: steps(count),
-                duration_s,
-                ramp_s,
-                shape,
-                sigmoid_range: parameter,
-                time_constants: parameter,
-                ..Ramps::default()
-            };
+            let ramps = Ramps::shaped(shape, parameter);
+            let given = Ramps { distance: steps(count), duration_s, ramp_s, ..ramps };
             let ideal = ideal::ramps((count, duration_s, ramp_s), ideal::shape(shape, parameter));
             check(Move::Ramps(given), ideal);
         }
