@@ -8,9 +8,7 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stepscope_core::capture::samples::{SAMPLES, sample};
-use stepscope_core::scenario::presets::{
-    CONTROLLER_PLANT_PRESETS, CONTROLLER_PRESETS, PLANT_PRESETS, PRESETS, Preset,
-};
+use stepscope_core::scenario::presets::{self, Preset};
 use stepscope_core::scenario::{MAX_TEXT_BYTES, Problems, Scenario, link};
 use stepscope_core::sim::Experiment;
 
@@ -79,7 +77,7 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
 }
 
 pub(crate) fn all_presets() -> impl Iterator<Item = &'static Preset> {
-    PRESETS.iter().chain(PLANT_PRESETS).chain(CONTROLLER_PRESETS).chain(CONTROLLER_PLANT_PRESETS)
+    presets::all()
 }
 
 fn preset(id: &str) -> Option<&'static Preset> {

@@ -6,6 +6,7 @@
 //! | `page`, `dist`, `build_record` | build the page, unless it is up to date |
 //! | `docs` | build the documentation as a site |
 //! | `release` | pack the command for a release |
+//! | `c` | install the C and C++ library into a folder, and test it |
 //! | `sources` | format, lint and type-check the page's sources |
 //! | `words`, `spelling` | check the words and the spelling of texts |
 //! | `headers`, `serve` | the local server |
@@ -20,6 +21,7 @@ mod bare_metal;
 mod bench;
 mod browser;
 mod build_record;
+mod c;
 mod dist;
 mod docs;
 mod dump_readers;
@@ -98,6 +100,12 @@ enum Task {
         /// Folder to write to
         #[arg(long, default_value = "target/releases")]
         out: PathBuf,
+    },
+    /// Build the C and C++ library, and install headers, libraries, pkg-config and CMake files
+    C {
+        /// Folder to install into, such as /usr/local
+        #[arg(long)]
+        prefix: PathBuf,
     },
     /// Serve the page's sources without building anything
     Serve {
@@ -216,6 +224,7 @@ async fn perform(task: Task) -> Result<()> {
             Ok(())
         }
         Task::Release { target, out } => release::make(release::Options { target, out }).await,
+        Task::C { prefix } => c::install(&prefix, c::Build::Library).await,
         Task::Serve { port, web: folder } => {
             serve::serve(serve::bind(port)?, &folder.unwrap_or(web), false).await
         }

@@ -17,7 +17,7 @@ use crate::output_buffer::{self, print_line};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimize, WasmTools};
 use crate::{
-    avr, bare_metal, dist, docs, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
+    avr, bare_metal, c, dist, docs, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
     spelling, words,
 };
 
@@ -40,6 +40,8 @@ pub(crate) enum Step {
     Vcd,
     /// Firmware in simavr: its recordings, and its replies to the live commands
     Avr,
+    /// The C and C++ library: warnings, valgrind, sanitizers, CMake
+    C,
     /// Live commands, with a host and a device in Python and with socat
     Live,
     /// Golden cases on a bare Cortex-M3, in QEMU
@@ -103,6 +105,7 @@ impl Step {
             Self::Native => run::cargo_test(cargo("test --workspace --locked --no-fail-fast")).await,
             Self::Vcd => dump_readers::test().await,
             Self::Avr => avr::test().await,
+            Self::C => c::test().await,
             Self::Live => judges::test().await,
             Self::BareMetal => bare_metal::test().await,
             Self::Wasm => wasm().await,
@@ -222,7 +225,7 @@ pub(crate) fn list() {
 /// for other programs; their output is buffered.
 const ROWS: [[&[Step]; 2]; 5] = [
     [&[Step::Format, Step::Scripts, Step::Lint, Step::Docs], &[]],
-    [&[Step::Native], &[Step::Vcd, Step::Avr, Step::Live, Step::BareMetal, Step::Wasm]],
+    [&[Step::Native], &[Step::Vcd, Step::Avr, Step::C, Step::Live, Step::BareMetal, Step::Wasm]],
     [&[Step::Types, Step::Package], &[]],
     // These use all cores, and live lines have deadlines.
     [&[Step::Page], &[]],

@@ -40,6 +40,7 @@ pub const MAX_CHANNELS: usize = 16;
 /// | 34 | TX, the controller's reply |
 /// | 35 | DE, the transceiver's transmit enable |
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(transparent)]
 pub struct Levels(pub u64);
 
 impl Levels {

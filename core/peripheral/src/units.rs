@@ -18,6 +18,7 @@ pub struct Cycles(pub u64);
 
 /// A point of device time in clock cycles since reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
 pub struct Instant(pub u64);
 
 impl Instant {

@@ -24,6 +24,11 @@ impl Preset {
     }
 }
 
+/// All presets, in the order of the command's list.
+pub fn all() -> impl Iterator<Item = &'static Preset> {
+    [PRESETS, PLANT_PRESETS, CONTROLLER_PRESETS, CONTROLLER_PLANT_PRESETS].into_iter().flatten()
+}
+
 /// What a preset is for: its group in the page's gallery.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Task {
@@ -150,12 +155,7 @@ mod tests {
 
     #[test]
     fn every_preset_is_valid() {
-        let all: Vec<&Preset> = PRESETS
-            .iter()
-            .chain(PLANT_PRESETS)
-            .chain(CONTROLLER_PRESETS)
-            .chain(CONTROLLER_PLANT_PRESETS)
-            .collect();
+        let all: Vec<&Preset> = all().collect();
         for (index, preset) in all.iter().enumerate() {
             let scenario = Scenario::from_json_of(preset.json, VERSION.into())
                 .unwrap_or_else(|p| panic!("{}: {p:?}", preset.id));

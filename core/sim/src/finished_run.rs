@@ -1,4 +1,5 @@
 //! A scenario's run from reset to its end, with every edge, in one call: [`run`]; and the plan's [`step_times`].
+//! [`run_watched`] reports progress, can be stopped, and can do without the edges.
 //!
 //! ```
 //! let scenario: stepscope_scenario::Scenario = r#"{ "bus": { "channels": 2 } }"#.parse()?;
@@ -9,19 +10,22 @@
 //! ```
 
 use crate::summary::{ControllerSummary, Summary};
-use crate::{Experiment, Run};
+use crate::{Experiment, Run, RunLimits};
 use alloc::vec::Vec;
-use core::ops::Deref;
+use core::ops::{ControlFlow, Deref};
 use stepscope_motion::{AxisPlan, ScheduledStep};
 use stepscope_peripheral::device::Faults;
 use stepscope_peripheral::signal::{Record, Sink};
 use stepscope_peripheral::trace::{Digest, Step, steps};
-use stepscope_scenario::{Problem, Problems, Scenario, Source, ValueError};
+use stepscope_peripheral::units::{Cycles, Instant};
+use stepscope_scenario::{Problem, Problems, Scenario, ValueError};
 
 /// Maximum edges of all controllers of a stored run, at 16 bytes each. A step has two.
 pub const MAX_RECORDS: u64 = 48_000_000;
-/// Edges between two checks of that maximum.
+/// Edges between two checks of that maximum, and between two reports of progress.
 const RECORDS_PER_CHECK: u64 = 1 << 16;
+/// The same for a run with motors, whose cycles take time without edges, too.
+const CYCLES_PER_CHECK: u64 = 1 << 20;
 
 /// A run that has ended, with every edge. It dereferences to the run of its first controller.
 #[derive(Clone, Debug)]
@@ -43,7 +47,25 @@ pub struct ControllerRun {
 /// # Errors
 /// All problems of the scenario, a run without an end, and more than [`MAX_RECORDS`] edges.
 pub fn run(scenario: &Scenario) -> Result<FinishedRun, Problems> {
-    run_within(&Experiment::new(scenario)?, MAX_RECORDS)
+    let experiment = Experiment::new(scenario)?;
+    // Nothing stops it.
+    run_within(&experiment, Edges::Stored(MAX_RECORDS), |_| ControlFlow::Continue(()))?.ok_or_else(too_long)
+}
+
+/// Runs an experiment to its end. Without `stores_edges` the traces are empty, and any number of edges is possible.
+///
+/// `on_progress` receives the number of cycles that were run: 0 first, then a new number from time to time, and all of them
+/// at last. [`ControlFlow::Break`] stops the run, and the result is `None`.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_watched(
+    experiment: &Experiment,
+    stores_edges: bool,
+    on_progress: impl FnMut(Cycles) -> ControlFlow<()>,
+) -> Result<Option<FinishedRun>, Problems> {
+    let edges = if stores_edges { Edges::Stored(MAX_RECORDS) } else { Edges::Counted };
+    run_within(experiment, edges, on_progress)
 }
 
 /// The steps of an axis as planned, with cycles of the scenario's clock from the start of the motion. `axis` counts from 0.
@@ -53,17 +75,27 @@ pub fn run(scenario: &Scenario) -> Result<FinishedRun, Problems> {
 /// [`planned_steps`].
 pub fn step_times(scenario: &Scenario, axis: usize) -> Result<Vec<ScheduledStep>, Problems> {
     let experiment = Experiment::new(scenario)?;
-    let plans = experiment.plans();
-    let Some(last) = plans.len().checked_sub(1).filter(|_| matches!(scenario.source, Source::Motion(_)))
-    else {
+    planned_steps(axis_plan(&experiment, 0, axis)?, experiment.config().clock_hz())
+}
+
+/// The plan of an axis. `controller` and `axis` count from 0.
+///
+/// # Errors
+/// A controller or an axis that does not exist, and a source without planned axes.
+pub fn axis_plan(experiment: &Experiment, controller: usize, axis: usize) -> Result<&AxisPlan, Problems> {
+    let out_of_range = |path, given: usize, last: usize| {
+        let cause = ValueError::Range { given: given as f64, min: 0.0, max: last as f64, unit: "" };
+        Problems::from(Problem::new(path, cause))
+    };
+    if controller >= experiment.controllers() {
+        return Err(out_of_range("controller", controller, experiment.controllers().saturating_sub(1)));
+    }
+    let plans = experiment.plans_of(controller);
+    let Some(last) = plans.len().checked_sub(1) else {
         let detail = "only a motion has planned steps; use a source of kind motion, or the steps of a run";
         return Err(Problem::new("source", ValueError::Conflict { detail }).into());
     };
-    let plan = plans.get(axis).ok_or_else(|| {
-        let cause = ValueError::Range { given: axis as f64, min: 0.0, max: last as f64, unit: "" };
-        Problem::new("axis", cause)
-    })?;
-    planned_steps(plan, scenario.clock_hz)
+    plans.get(axis).ok_or_else(|| out_of_range("axis", axis, last))
 }
 
 /// The steps of a plan, in cycles at `clock_hz` from the start of the motion.
@@ -78,23 +110,51 @@ pub fn planned_steps(plan: &AxisPlan, clock_hz: u32) -> Result<Vec<ScheduledStep
     Ok(plan.due_steps(clock_hz).collect())
 }
 
-fn run_within(experiment: &Experiment, max_records: u64) -> Result<FinishedRun, Problems> {
+#[derive(Clone, Copy)]
+enum Edges {
+    /// At most so many, of all controllers.
+    Stored(u64),
+    Counted,
+}
+
+fn run_within(
+    experiment: &Experiment,
+    edges: Edges,
+    mut on_progress: impl FnMut(Cycles) -> ControlFlow<()>,
+) -> Result<Option<FinishedRun>, Problems> {
     experiment.check_has_end()?;
+    let max_records = match edges {
+        Edges::Stored(max_records) => max_records,
+        Edges::Counted => u64::MAX,
+    };
     // Segments have a known number of steps; other edges are counted during the run.
     let steps = experiment.segments().map(|segments| segments.steps());
     if steps.is_some_and(|steps| steps > max_records / 2) {
         return Err(too_long());
     }
-    let mut recordings: Vec<Recording> =
-        (0..experiment.controllers()).map(|_| Recording::default()).collect();
+    let recording = || Recording {
+        trace: matches!(edges, Edges::Stored(_)).then(Vec::new),
+        digest: Digest::default(),
+    };
+    let mut recordings: Vec<Recording> = (0..experiment.controllers()).map(|_| recording()).collect();
     let mut run = experiment.start();
-    while !run.advance_each(RECORDS_PER_CHECK, &mut recordings) {
+    let mut limits = RunLimits { records: RECORDS_PER_CHECK, ..RunLimits::default() };
+    loop {
+        if on_progress(run.cycles()).is_break() {
+            return Ok(None);
+        }
+        if run.is_done() {
+            return Ok(Some(FinishedRun::of(experiment, &run, recordings)));
+        }
+        if experiment.plants().is_some() {
+            limits.cycle = Instant(run.cycles().0.saturating_add(CYCLES_PER_CHECK));
+        }
+        run.advance_observed::<_, ()>(limits, &mut recordings, &mut []);
         let records: u64 = recordings.iter().map(|recording| recording.digest.records()).sum();
         if records > max_records {
             return Err(too_long());
         }
     }
-    Ok(FinishedRun::of(experiment, &run, recordings))
 }
 
 fn too_long() -> Problems {
@@ -103,15 +163,14 @@ fn too_long() -> Problems {
     Problem::new("source", ValueError::Conflict { detail }).into()
 }
 
-#[derive(Default)]
 struct Recording {
-    trace: Vec<Record>,
+    trace: Option<Vec<Record>>,
     digest: Digest,
 }
 
 impl Sink for Recording {
     fn record(&mut self, record: Record) {
-        self.trace.push(record);
+        self.trace.record(record);
         self.digest.record(record);
     }
 }
@@ -119,7 +178,7 @@ impl Sink for Recording {
 impl FinishedRun {
     fn of(experiment: &Experiment, run: &Run, recordings: Vec<Recording>) -> Self {
         let summary = Summary::new(experiment, run, recordings.iter().map(|recording| &recording.digest));
-        let traces = recordings.into_iter().map(|recording| recording.trace);
+        let traces = recordings.into_iter().map(|recording| recording.trace.unwrap_or_default());
         let controllers = traces.zip(&summary.controllers);
         let controllers =
             controllers.map(|(trace, summary)| ControllerRun { trace, summary: summary.clone() });
@@ -151,7 +210,7 @@ impl ControllerRun {
         self.summary.digest
     }
 
-    /// Every edge: a cycle, and the levels from then on.
+    /// Every edge: a cycle, and the levels from then on. Empty if [`run_watched`] did not store them.
     pub fn trace(&self) -> &[Record] {
         &self.trace
     }
@@ -184,6 +243,37 @@ mod tests {
 
     fn scenario(json: &str) -> Scenario {
         json.parse().expect(json)
+    }
+
+    fn stored(experiment: &Experiment, max_records: u64) -> Result<Option<FinishedRun>, Problems> {
+        run_within(experiment, Edges::Stored(max_records), |_| ControlFlow::Continue(()))
+    }
+
+    #[test]
+    fn progress_reports_rising_cycles_and_can_stop_the_run() {
+        let long = r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":50000},"speed":{"steps_s":20000}}}]}]}}}"#;
+        for json in ["{}", r#"{"plant":{}}"#, long] {
+            let experiment = Experiment::from_json(json).expect("it runs");
+            let expected = run(&scenario(json)).expect("it runs");
+            for stores_edges in [true, false] {
+                let mut reported = Vec::new();
+                let found = run_watched(&experiment, stores_edges, |cycles| {
+                    reported.push(cycles);
+                    ControlFlow::Continue(())
+                });
+                let found = found.expect("it runs").expect("nothing stops it");
+                assert_eq!(found.summary(), expected.summary());
+                assert_eq!(found.trace().len(), if stores_edges { expected.trace().len() } else { 0 });
+                assert!(reported.is_sorted() && (json == "{}" || reported.len() > 2), "{reported:?}");
+                assert_eq!((reported[0], reported.last()), (Cycles(0), Some(&expected.summary().cycles)));
+            }
+            let mut calls = 0;
+            let stopped = run_watched(&experiment, true, |_| {
+                calls += 1;
+                if calls == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            assert!(stopped.expect("it runs").is_none() && calls == 2);
+        }
     }
 
     #[test]
@@ -225,6 +315,8 @@ mod tests {
         let endless = "run_cycles: a jog button stays pressed, so the run has no end; set run_cycles, or release the button in inputs";
         check(run(&scenario(jog)).err(), endless);
         check(step_times(&scenario("{}"), 1).err(), "axis: 1 is out of range; use 0");
+        let experiment = Experiment::from_json("{}").expect("it runs");
+        check(axis_plan(&experiment, 1, 0).err(), "controller: 1 is out of range; use 0");
         check(
             step_times(&scenario(r#"{"source":{"packets":{"packets":["83"]}}}"#), 0).err(),
             "source: only a motion has planned steps; use a source of kind motion, or the steps of a run",
@@ -245,12 +337,12 @@ mod tests {
             r#"{"source":{"motion":{"axes":[{"moves":[{"constant":{"distance":{"steps":200000},"speed":{"steps_s":20000}}}]}]}}}"#,
         );
         let motion = motion.expect("it runs");
-        assert!(run_within(&motion, MAX_RECORDS).is_ok());
-        assert_eq!(run_within(&motion, 100_000).err(), Some(too_long()));
+        assert!(stored(&motion, MAX_RECORDS).is_ok());
+        assert_eq!(stored(&motion, 100_000).err(), Some(too_long()));
         let segments = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"count":1000}}]}]}}}"#;
         let segments = Experiment::from_json(segments).expect("it runs");
-        assert!(run_within(&segments, 2000).is_ok());
-        assert_eq!(run_within(&segments, 1999).err(), Some(too_long()));
+        assert!(stored(&segments, 2000).is_ok());
+        assert_eq!(stored(&segments, 1999).err(), Some(too_long()));
         assert!(too_long().to_string().contains(&MAX_RECORDS.to_string()));
     }
 }

@@ -43,7 +43,9 @@ pub use controllers::RunLimits;
 pub use cost::{BUDGET_MOTOR_GRID_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::Experiment;
 pub use faults::{fault_sweep, power_cut};
-pub use finished_run::{ControllerRun, FinishedRun, MAX_RECORDS, planned_steps, run, step_times};
+pub use finished_run::{
+    ControllerRun, FinishedRun, MAX_RECORDS, axis_plan, planned_steps, run, run_watched, step_times,
+};
 pub use hosts::script::{replayed, scripted};
 pub use hosts::{framed_host, raw_host};
 pub use line::noise;

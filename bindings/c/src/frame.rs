@@ -1,0 +1,67 @@
+//! Frames of the framed protocol.
+
+use crate::pointer::{self, Buffer};
+use crate::status::{Failure, RANGE, Status, checked};
+use stepscope_core::peripheral::wire::frame::{DELIMITER, Deframed, Deframer, MAX_DECODED, MIN_DECODED, emit};
+
+const MAX_BODY: usize = MAX_DECODED - MIN_DECODED;
+
+/// Encodes a frame for the line: CRC, COBS and the closing 0x00. `length` is at most 594 bytes, and 604 bytes hold any frame.
+/// `body` may be NULL if `length` is 0. `out` NULL with capacity 0 asks for the number of bytes alone.
+///
+/// Returns STEPSCOPE_RANGE (the body is too long), _BUFFER, _NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stepscope_encode_frame(
+    address: u8,
+    kind: u8,
+    body: *const u8,
+    length: usize,
+    out: *mut u8,
+    capacity: usize,
+    count: *mut usize,
+) -> Status {
+    checked(|| {
+        // SAFETY: the header asks for pointers that are NULL or valid for their lengths.
+        unsafe {
+            let buffer = Buffer::new(out, capacity, count)?;
+            if length > MAX_BODY {
+                let message = format!("{length} bytes are out of range; use 0 to {MAX_BODY}");
+                return Err(Failure::new(RANGE, "length", message));
+            }
+            buffer.fill(emit(address, kind, pointer::items("body", body, length)?))
+        }
+    })
+}
+
+/// Decodes one frame; its closing 0x00 may be missing. Writes address, kind, and the body, which has at most 594 bytes.
+///
+/// Returns STEPSCOPE_RANGE (no frame: COBS or CRC are wrong, or there is more than one), _BUFFER (the body is longer; address
+/// and kind are written), _NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn stepscope_decode_frame(
+    data: *const u8,
+    length: usize,
+    address: *mut u8,
+    kind: *mut u8,
+    out: *mut u8,
+    capacity: usize,
+    count: *mut usize,
+) -> Status {
+    checked(|| {
+        // SAFETY: the header asks for pointers that are NULL or valid for their lengths.
+        unsafe {
+            let buffer = Buffer::new(out, capacity, count)?;
+            let data = pointer::items("data", data, length)?;
+            let data = data.strip_suffix(&[DELIMITER]).unwrap_or(data);
+            let no_frame = || Failure::new(RANGE, "data", "no frame; use the bytes of one, with COBS and CRC");
+            let mut deframer = Deframer::default();
+            if data.iter().any(|byte| deframer.byte(*byte).is_some()) {
+                return Err(no_frame());
+            }
+            let Some(Deframed::Frame(frame)) = deframer.byte(DELIMITER) else { return Err(no_frame()) };
+            pointer::put("address", address, frame.address)?;
+            pointer::put("kind", kind, frame.kind)?;
+            buffer.fill(frame.body.iter().copied())
+        }
+    })
+}
