@@ -17,8 +17,8 @@ use crate::output_buffer::{self, print_line};
 use crate::toolchain::{self, BARE_METAL, WASM};
 use crate::tools::{Optimize, WasmTools};
 use crate::{
-    avr, bare_metal, c, dist, docs, dump_readers, judges, npm, package, page, root, run, serial_port, sources,
-    spelling, words,
+    avr, bare_metal, c, dist, docs, dump_readers, judges, npm, package, page, root, run, serial_port,
+    sources, spelling, words,
 };
 
 const RUSTFMT: [&str; 2] = ["fmt --all", "fmt --manifest-path fuzz/Cargo.toml"];

@@ -14,7 +14,7 @@ use crate::root;
 
 const WORDS: &str = include_str!("words.txt");
 const ARROW: &str = " => ";
-const FOLDERS: [&str; 6] = ["cli/src", "core", "docs", "firmware", "wasm/src", "web"];
+const FOLDERS: [&str; 7] = ["bindings/c/src", "cli/src", "core", "docs", "firmware", "wasm/src", "web"];
 /// Built from sources that are checked.
 const EXCEPT: [&str; 2] = ["web/pkg", "web/pkg-recordings"];
 

@@ -7,14 +7,13 @@
  * Handles are names that the library looks up and never follows: one that was freed, never made, or is of another kind is
  * STEPSCOPE_HANDLE. Each has its own _free; NULL is OK there. Runs, devices and errors outlive their scenario.
  *
- * Errors. A call that fails and has an `error` makes one where *error is NULL, for the caller to free. An error that is there
- * is kept, so that after a chain of calls one look is enough. `error` may be NULL. OK leaves *error alone. All other results
- * of a call that fails are NULL or 0, unless its text says more.
+ * Errors. A call that fails creates an error where *error is NULL; the caller frees it. An existing error is kept, so that one
+ * check after several calls is enough. `error` may be NULL. OK leaves *error alone. After a failure *out is NULL.
  *
  * Buffers are (out, capacity, count): at most `capacity` items are written, *count is how many there are, and
- * STEPSCOPE_BUFFER says that there are more. `out` NULL with capacity 0 is OK and asks for the count.
+ * STEPSCOPE_BUFFER means that there are more. `out` NULL with capacity 0 is OK and returns the count.
  *
- * Structs that begin with `size` are set by a macro of their name: stepscope_summary summary = STEPSCOPE_SUMMARY;
+ * Structs that begin with `size` are initialized by a macro: stepscope_summary summary = STEPSCOPE_SUMMARY;
  *
  * Threads. Scenarios, runs and errors may be used by many threads at once; a device by one call at a time. Callbacks come in
  * the thread of the call. The library prints nothing, and touches neither signals nor the environment.
@@ -61,7 +60,7 @@ enum {
     STEPSCOPE_NULL = 2,     /* a pointer that must not be NULL is NULL */
     STEPSCOPE_HANDLE = 3,   /* freed, never made, or of another kind */
     STEPSCOPE_RANGE = 4,    /* no such controller, axis, channel, preset or number */
-    STEPSCOPE_BUFFER = 5,   /* the buffer is too small: filled as far as it goes, *count says how many there are */
+    STEPSCOPE_BUFFER = 5,   /* the buffer is too small: filled as far as it goes, *count is the number needed */
     STEPSCOPE_UTF8 = 6,     /* the text is not UTF-8 */
     STEPSCOPE_BUSY = 7,     /* in use by another thread, or by a callback of this one */
     STEPSCOPE_ORDER = 8,    /* not now: the edges were not stored, the device has not run */
@@ -87,7 +86,7 @@ typedef struct stepscope_scenario stepscope_scenario;
 // Result of a call: a STEPSCOPE_ constant.
 typedef int32_t stepscope_status;
 
-// What a controller has done; begin with STEPSCOPE_SUMMARY.
+// State of a controller at the end of a run, or of a device now; initialize with STEPSCOPE_SUMMARY.
 typedef struct {
     // sizeof(stepscope_summary)
     uint32_t size;
@@ -119,14 +118,14 @@ typedef struct {
     uint64_t levels;
 } stepscope_edge;
 
-// Gets each edge in the cycle in which it happens, in the thread of the call. It must return: no longjmp, no exception.
+// Receives each edge in the cycle in which it happens, in the thread of the call. It must return: no longjmp, no exception.
 typedef void (*stepscope_on_edge)(void *context, stepscope_edge edge);
 
-// Reports how many cycles a run has made: first 0, then from time to time, at last all of them. false stops the run. It is
+// Reports how many cycles a run has made: 0 at the start, then from time to time, and all of them at the end. false stops the run. It is
 // called in the thread of the run, and must return: no longjmp, no exception.
 typedef bool (*stepscope_progress)(void *context, uint64_t cycles);
 
-// Options of a run; begin with STEPSCOPE_RUN_OPTIONS.
+// Options of a run; initialize with STEPSCOPE_RUN_OPTIONS.
 typedef struct {
     // sizeof(stepscope_run_options)
     uint32_t size;
@@ -208,7 +207,7 @@ stepscope_status stepscope_device_send(stepscope_device *device,
 // until nothing can change any more. 1024 replies are kept; then the oldest are dropped.
 //
 // Returns STEPSCOPE_BUFFER (the reply is kept, for a larger buffer), _RANGE (the end of time), _BUSY, _NULL, _HANDLE.
-// `out` NULL with capacity 0 asks for the number of bytes, and keeps the reply.
+// `out` NULL with capacity 0 returns only the count, and keeps the reply.
 stepscope_status stepscope_device_receive(stepscope_device *device,
                                           uint64_t timeout_cycles,
                                           uint8_t *out,
@@ -223,7 +222,7 @@ stepscope_status stepscope_device_read(const stepscope_device *device,
                                        uint32_t offset,
                                        uint32_t *value);
 
-// Writes the register at a byte offset (STEPSCOPE_REG_) in the last cycle that was run, after all else in it. Where there is
+// Writes the register at a byte offset (STEPSCOPE_REG_) in the last cycle that was run, after everything else in it. Where there is
 // no register, or a read-only one, nothing happens.
 //
 // Returns STEPSCOPE_ORDER (the device has not run), _BUSY, _NULL, _HANDLE.
@@ -231,18 +230,16 @@ stepscope_status stepscope_device_write(stepscope_device *device,
                                         uint32_t offset,
                                         uint32_t value);
 
-// What the device has done so far.
+// The summary of the device so far.
 //
 // Returns STEPSCOPE_RANGE (out->size), _BUSY, _NULL, _HANDLE.
 stepscope_status stepscope_device_summary(const stepscope_device *device, stepscope_summary *out);
 
-// Calls `on_edge` for each edge from now on; NULL ends that. `context` is its first argument. Another thread may clock the
-// device, and then it is that thread which calls.
+// Calls `on_edge` for each edge from now on; NULL stops it. `context` is its first argument. The call comes
+// in the thread that clocks the device.
 //
 // Returns STEPSCOPE_BUSY, _NULL, _HANDLE.
-stepscope_status stepscope_device_watch(stepscope_device *device,
-                                        stepscope_on_edge on_edge,
-                                        void *context);
+stepscope_status stepscope_device_watch(stepscope_device *device, stepscope_on_edge on_edge, void *context);
 
 // Frees a device. NULL is OK; a second time is STEPSCOPE_HANDLE; during a call of the device STEPSCOPE_BUSY.
 stepscope_status stepscope_device_free(stepscope_device *device);
@@ -250,7 +247,7 @@ stepscope_status stepscope_device_free(stepscope_device *device);
 // Number of problems, 1 to 100; 0 for NULL and for a handle that is no error.
 size_t stepscope_error_count(const stepscope_error *error);
 
-// All problems, a line each: `path: what is wrong, and what to use instead`. The text lives as long as the error. It is ""
+// All problems, one line per problem: `path: what is wrong, and what to use instead`. The text lives as long as the error. It is ""
 // for NULL and for a handle that is no error; never NULL.
 const char *stepscope_error_text(const stepscope_error *error);
 
@@ -268,7 +265,7 @@ const char *stepscope_error_message(const stepscope_error *error,
 stepscope_status stepscope_error_free(stepscope_error *error);
 
 // Encodes a frame for the line: CRC, COBS and the closing 0x00. `length` is at most 594 bytes, and 604 bytes hold any frame.
-// `body` may be NULL if `length` is 0. `out` NULL with capacity 0 asks for the number of bytes alone.
+// `body` may be NULL if `length` is 0. `out` NULL with capacity 0 returns only the count.
 //
 // Returns STEPSCOPE_RANGE (the body is too long), _BUFFER, _NULL.
 stepscope_status stepscope_encode_frame(uint8_t address,
@@ -300,7 +297,7 @@ stepscope_status stepscope_run_scenario(const stepscope_scenario *scenario,
                                         stepscope_run **out,
                                         stepscope_error **error);
 
-// What a controller has done in a run. `controller` counts from 0.
+// The summary of a controller. `controller` counts from 0.
 //
 // Returns STEPSCOPE_RANGE (no such controller, or out->size), _NULL, _HANDLE.
 stepscope_status stepscope_run_summary(const stepscope_run *run, uint32_t controller, stepscope_summary *out);
@@ -314,7 +311,7 @@ stepscope_status stepscope_run_edges(const stepscope_run *run,
                                      size_t *count);
 
 // The steps of a channel, in cycles since reset. Writes at most `capacity` of them to `out`, and their number to `*count`.
-// `out` NULL with capacity 0 asks for the number alone. `controller` and `channel` count from 0; unused channels have none.
+// `out` NULL with capacity 0 returns only the count. `controller` and `channel` count from 0; unused channels have none.
 //
 // Returns STEPSCOPE_ORDER (edges were not stored), _RANGE (no such controller; channel above 15), _BUFFER (there are more
 // than `capacity`), _NULL, _HANDLE.
@@ -368,7 +365,7 @@ stepscope_status stepscope_scenario_free(stepscope_scenario *scenario);
 const char *stepscope_status_text(stepscope_status status);
 
 // The steps of an axis as planned, in cycles of the scenario's clock from the start of the motion. Writes at most `capacity`
-// of them to `out`, and their number, up to 24000000, to `*count`. `out` NULL with capacity 0 asks for the number alone.
+// of them to `out`, and their number, up to 24000000, to `*count`. `out` NULL with capacity 0 returns only the count.
 // `controller` and `axis` count from 0.
 //
 // Returns STEPSCOPE_PROBLEMS (the scenario is refused, or is no motion), _RANGE (no such controller or axis),
@@ -399,7 +396,7 @@ const char *stepscope_status_text(stepscope_status status);
 // Number of problems, 1 to 100; 0 for NULL and for a handle that is no error.
 size_t stepscope_error_count(const stepscope_error *error);
 
-// All problems, a line each: `path: what is wrong, and what to use instead`. The text lives as long as the error. It is ""
+// All problems, one line per problem: `path: what is wrong, and what to use instead`. The text lives as long as the error. It is ""
 // for NULL and for a handle that is no error; never NULL.
 const char *stepscope_error_text(const stepscope_error *error);
 
@@ -451,7 +448,7 @@ stepscope_status stepscope_run_scenario(const stepscope_scenario *scenario,
                                         stepscope_run **out,
                                         stepscope_error **error);
 
-// What a controller has done in a run. `controller` counts from 0.
+// The summary of a controller. `controller` counts from 0.
 //
 // Returns STEPSCOPE_RANGE (no such controller, or out->size), _NULL, _HANDLE.
 stepscope_status stepscope_run_summary(const stepscope_run *run, uint32_t controller, stepscope_summary *out);
@@ -465,7 +462,7 @@ stepscope_status stepscope_run_edges(const stepscope_run *run,
                                      size_t *count);
 
 // The steps of a channel, in cycles since reset. Writes at most `capacity` of them to `out`, and their number to `*count`.
-// `out` NULL with capacity 0 asks for the number alone. `controller` and `channel` count from 0; unused channels have none.
+// `out` NULL with capacity 0 returns only the count. `controller` and `channel` count from 0; unused channels have none.
 //
 // Returns STEPSCOPE_ORDER (edges were not stored), _RANGE (no such controller; channel above 15), _BUFFER (there are more
 // than `capacity`), _NULL, _HANDLE.
@@ -490,7 +487,7 @@ stepscope_status stepscope_run_write_vcd(const stepscope_run *run,
 stepscope_status stepscope_run_free(stepscope_run *run);
 
 // The steps of an axis as planned, in cycles of the scenario's clock from the start of the motion. Writes at most `capacity`
-// of them to `out`, and their number, up to 24000000, to `*count`. `out` NULL with capacity 0 asks for the number alone.
+// of them to `out`, and their number, up to 24000000, to `*count`. `out` NULL with capacity 0 returns only the count.
 // `controller` and `axis` count from 0.
 //
 // Returns STEPSCOPE_PROBLEMS (the scenario is refused, or is no motion), _RANGE (no such controller or axis),
@@ -562,7 +559,7 @@ stepscope_status stepscope_device_send(stepscope_device *device,
 // until nothing can change any more. 1024 replies are kept; then the oldest are dropped.
 //
 // Returns STEPSCOPE_BUFFER (the reply is kept, for a larger buffer), _RANGE (the end of time), _BUSY, _NULL, _HANDLE.
-// `out` NULL with capacity 0 asks for the number of bytes, and keeps the reply.
+// `out` NULL with capacity 0 returns only the count, and keeps the reply.
 stepscope_status stepscope_device_receive(stepscope_device *device,
                                           uint64_t timeout_cycles,
                                           uint8_t *out,
@@ -577,7 +574,7 @@ stepscope_status stepscope_device_read(const stepscope_device *device,
                                        uint32_t offset,
                                        uint32_t *value);
 
-// Writes the register at a byte offset (STEPSCOPE_REG_) in the last cycle that was run, after all else in it. Where there is
+// Writes the register at a byte offset (STEPSCOPE_REG_) in the last cycle that was run, after everything else in it. Where there is
 // no register, or a read-only one, nothing happens.
 //
 // Returns STEPSCOPE_ORDER (the device has not run), _BUSY, _NULL, _HANDLE.
@@ -585,24 +582,22 @@ stepscope_status stepscope_device_write(stepscope_device *device,
                                         uint32_t offset,
                                         uint32_t value);
 
-// What the device has done so far.
+// The summary of the device so far.
 //
 // Returns STEPSCOPE_RANGE (out->size), _BUSY, _NULL, _HANDLE.
 stepscope_status stepscope_device_summary(const stepscope_device *device, stepscope_summary *out);
 
-// Calls `on_edge` for each edge from now on; NULL ends that. `context` is its first argument. Another thread may clock the
-// device, and then it is that thread which calls.
+// Calls `on_edge` for each edge from now on; NULL stops it. `context` is its first argument. The call comes
+// in the thread that clocks the device.
 //
 // Returns STEPSCOPE_BUSY, _NULL, _HANDLE.
-stepscope_status stepscope_device_watch(stepscope_device *device,
-                                        stepscope_on_edge on_edge,
-                                        void *context);
+stepscope_status stepscope_device_watch(stepscope_device *device, stepscope_on_edge on_edge, void *context);
 
 // Frees a device. NULL is OK; a second time is STEPSCOPE_HANDLE; during a call of the device STEPSCOPE_BUSY.
 stepscope_status stepscope_device_free(stepscope_device *device);
 
 // Encodes a frame for the line: CRC, COBS and the closing 0x00. `length` is at most 594 bytes, and 604 bytes hold any frame.
-// `body` may be NULL if `length` is 0. `out` NULL with capacity 0 asks for the number of bytes alone.
+// `body` may be NULL if `length` is 0. `out` NULL with capacity 0 returns only the count.
 //
 // Returns STEPSCOPE_RANGE (the body is too long), _BUFFER, _NULL.
 stepscope_status stepscope_encode_frame(uint8_t address,

@@ -1,11 +1,11 @@
 //! A device alone, clocked by its caller: by levels of the line, by bytes, by registers.
 
-use crate::error::ErrorHandle;
+use crate::error::{ErrorHandle, guarded};
+use crate::handle;
 use crate::pointer::{self, Buffer};
 use crate::run::{Edge, Summary};
-use crate::scenario::ScenarioHandle;
-use crate::status::{BUSY, Failure, ORDER, PANIC, RANGE, Status, checked, guarded};
-use crate::handle;
+use crate::scenario::{ScenarioHandle, StoredScenario};
+use crate::status::{BUSY, Failure, ORDER, PANIC, RANGE, Status, checked};
 use std::collections::VecDeque;
 use std::ffi::c_void;
 use std::ptr;
@@ -22,13 +22,24 @@ pub struct DeviceHandle {
     _private: (),
 }
 
-/// Gets each edge in the cycle in which it happens, in the thread of the call. It must return: no longjmp, no exception.
+/// Receives each edge in the cycle in which it happens, in the thread of the call. It must return: no longjmp, no exception.
 pub type OnEdge = Option<unsafe extern "C" fn(context: *mut c_void, edge: Edge)>;
 
 /// Replies that wait to be received; then the oldest is dropped.
 const MAX_REPLIES: usize = 1024;
 
-pub(crate) struct DeviceState {
+struct StoredDevice(Mutex<DeviceState>);
+
+impl handle::Object for StoredDevice {
+    type Handle = DeviceHandle;
+    const NAME: &'static str = "device";
+
+    fn is_busy(&self) -> bool {
+        matches!(self.0.try_lock(), Err(TryLockError::WouldBlock))
+    }
+}
+
+struct DeviceState {
     device: Device,
     output: Output,
     clock_hz: u32,
@@ -197,8 +208,8 @@ fn with<T>(
     handle: *const DeviceHandle,
     work: impl FnOnce(&mut DeviceState) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
-    let device = handle::get::<Mutex<DeviceState>>(handle)?;
-    let mut state = device.try_lock().map_err(|error| match error {
+    let device = handle::get::<StoredDevice>(handle)?;
+    let mut state = device.0.try_lock().map_err(|error| match error {
         TryLockError::WouldBlock => Failure::new(BUSY, "device", "in use; use one device per thread"),
         TryLockError::Poisoned(_) => Failure::new(PANIC, "device", "unusable after a bug; make a new one"),
     })?;
@@ -223,9 +234,9 @@ pub unsafe extern "C" fn stepscope_device_new(
             let state = if scenario.is_null() {
                 DeviceState::new(&ValidatedScenario::from_json("{}"), controller)?
             } else {
-                DeviceState::new(&*handle::get::<ValidatedScenario>(scenario)?, controller)?
+                DeviceState::new(&handle::get::<StoredScenario>(scenario)?.0, controller)?
             };
-            pointer::put("out", out, handle::add(Mutex::new(state)))
+            pointer::put("out", out, handle::add(StoredDevice(Mutex::new(state))))
         })
     }
 }
@@ -309,7 +320,7 @@ pub unsafe extern "C" fn stepscope_device_send(
 /// until nothing can change any more. 1024 replies are kept; then the oldest are dropped.
 ///
 /// Returns STEPSCOPE_BUFFER (the reply is kept, for a larger buffer), _RANGE (the end of time), _BUSY, _NULL, _HANDLE.
-/// `out` NULL with capacity 0 asks for the number of bytes, and keeps the reply.
+/// `out` NULL with capacity 0 returns only the count, and keeps the reply.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stepscope_device_receive(
     device: *mut DeviceHandle,
@@ -353,7 +364,7 @@ pub unsafe extern "C" fn stepscope_device_read(
     })
 }
 
-/// Writes the register at a byte offset (STEPSCOPE_REG_) in the last cycle that was run, after all else in it. Where there is
+/// Writes the register at a byte offset (STEPSCOPE_REG_) in the last cycle that was run, after everything else in it. Where there is
 /// no register, or a read-only one, nothing happens.
 ///
 /// Returns STEPSCOPE_ORDER (the device has not run), _BUSY, _NULL, _HANDLE.
@@ -370,7 +381,7 @@ pub extern "C" fn stepscope_device_write(device: *mut DeviceHandle, offset: u32,
     })
 }
 
-/// What the device has done so far.
+/// The summary of the device so far.
 ///
 /// Returns STEPSCOPE_RANGE (out->size), _BUSY, _NULL, _HANDLE.
 #[unsafe(no_mangle)]
@@ -382,8 +393,8 @@ pub unsafe extern "C" fn stepscope_device_summary(device: *const DeviceHandle, o
     })
 }
 
-/// Calls `on_edge` for each edge from now on; NULL ends that. `context` is its first argument. Another thread may clock the
-/// device, and then it is that thread which calls.
+/// Calls `on_edge` for each edge from now on; NULL stops it. `context` is its first argument. The call comes
+/// in the thread that clocks the device.
 ///
 /// Returns STEPSCOPE_BUSY, _NULL, _HANDLE.
 #[unsafe(no_mangle)]
@@ -403,5 +414,5 @@ pub unsafe extern "C" fn stepscope_device_watch(
 /// Frees a device. NULL is OK; a second time is STEPSCOPE_HANDLE; during a call of the device STEPSCOPE_BUSY.
 #[unsafe(no_mangle)]
 pub extern "C" fn stepscope_device_free(device: *mut DeviceHandle) -> Status {
-    checked(|| handle::free::<Mutex<DeviceState>>(device))
+    checked(|| handle::free::<StoredDevice>(device))
 }

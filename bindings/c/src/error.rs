@@ -1,7 +1,7 @@
 //! Errors: what is wrong, one line per problem.
 
-use crate::handle;
-use crate::status::{Failure, Status, checked};
+use crate::status::{Failure, OK, Status, caught, checked};
+use crate::{handle, pointer};
 use std::ffi::{CString, c_char};
 use std::ptr;
 
@@ -13,6 +13,11 @@ pub struct ErrorHandle {
 pub(crate) struct Error {
     text: CString,
     lines: Vec<(CString, CString)>,
+}
+
+impl handle::Object for Error {
+    type Handle = ErrorHandle;
+    const NAME: &'static str = "error";
 }
 
 /// A text for C; it ends at its first 0.
@@ -36,6 +41,25 @@ impl Error {
     }
 }
 
+/// As [`checked`], and with an error where the caller has room for one.
+///
+/// # Safety
+/// `error` is NULL, or valid for reads and writes.
+pub(crate) unsafe fn guarded(
+    error: *mut *mut ErrorHandle,
+    call: impl FnOnce() -> Result<(), Failure>,
+) -> Status {
+    match caught(call) {
+        Ok(()) => OK,
+        Err(failure) => {
+            let status = failure.status;
+            // SAFETY: as of this function.
+            unsafe { pointer::put_first(error, || handle::add(Error::new(failure))) };
+            status
+        }
+    }
+}
+
 /// Number of problems, 1 to 100; 0 for NULL and for a handle that is no error.
 #[unsafe(no_mangle)]
 pub extern "C" fn stepscope_error_count(error: *const ErrorHandle) -> usize {
@@ -47,7 +71,7 @@ pub extern "C" fn stepscope_error_count(error: *const ErrorHandle) -> usize {
     count
 }
 
-/// All problems, a line each: `path: what is wrong, and what to use instead`. The text lives as long as the error. It is ""
+/// All problems, one line per problem: `path: what is wrong, and what to use instead`. The text lives as long as the error. It is ""
 /// for NULL and for a handle that is no error; never NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn stepscope_error_text(error: *const ErrorHandle) -> *const c_char {

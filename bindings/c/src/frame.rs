@@ -2,12 +2,14 @@
 
 use crate::pointer::{self, Buffer};
 use crate::status::{Failure, RANGE, Status, checked};
-use stepscope_core::peripheral::wire::frame::{DELIMITER, Deframed, Deframer, MAX_DECODED, MIN_DECODED, emit};
+use stepscope_core::peripheral::wire::frame::{
+    DELIMITER, Deframed, Deframer, MAX_DECODED, MIN_DECODED, emit,
+};
 
 const MAX_BODY: usize = MAX_DECODED - MIN_DECODED;
 
 /// Encodes a frame for the line: CRC, COBS and the closing 0x00. `length` is at most 594 bytes, and 604 bytes hold any frame.
-/// `body` may be NULL if `length` is 0. `out` NULL with capacity 0 asks for the number of bytes alone.
+/// `body` may be NULL if `length` is 0. `out` NULL with capacity 0 returns only the count.
 ///
 /// Returns STEPSCOPE_RANGE (the body is too long), _BUFFER, _NULL.
 #[unsafe(no_mangle)]
@@ -53,7 +55,8 @@ pub unsafe extern "C" fn stepscope_decode_frame(
             let buffer = Buffer::new(out, capacity, count)?;
             let data = pointer::items("data", data, length)?;
             let data = data.strip_suffix(&[DELIMITER]).unwrap_or(data);
-            let no_frame = || Failure::new(RANGE, "data", "no frame; use the bytes of one, with COBS and CRC");
+            let no_frame =
+                || Failure::new(RANGE, "data", "no frame; use the bytes of one, with COBS and CRC");
             let mut deframer = Deframer::default();
             if data.iter().any(|byte| deframer.byte(*byte).is_some()) {
                 return Err(no_frame());

@@ -4,7 +4,7 @@
 //! scenario, run, steps, device, frame     the functions
 //! handle                                  the table of names: what a caller holds is looked up, never followed
 //! pointer                                 the only places that read and write the caller's memory
-//! status                                  results, errors, and the border that no panic crosses
+//! status, error                           results and errors; the border that no panic crosses
 //! ```
 //!
 //! Nothing is computed here: each function checks its arguments and calls `stepscope-core`.

@@ -1,9 +1,9 @@
 //! Runs: every edge of a scenario, from reset to its end.
 
-use crate::error::ErrorHandle;
+use crate::error::{ErrorHandle, guarded};
 use crate::pointer::{self, Buffer, Sized32};
-use crate::scenario::ScenarioHandle;
-use crate::status::{FILE, Failure, ORDER, RANGE, STOPPED, Status, checked, guarded};
+use crate::scenario::{ScenarioHandle, StoredScenario};
+use crate::status::{FILE, Failure, ORDER, RANGE, STOPPED, Status, checked};
 use crate::{handle, steps::Step};
 use std::ffi::{c_char, c_void};
 use std::fs::File;
@@ -12,9 +12,9 @@ use std::mem::offset_of;
 use std::ops::ControlFlow;
 use std::ptr;
 use stepscope_core::inspect::export::vcd::VcdWriter;
-use stepscope_core::prelude::{ControllerRun, FinishedRun, Record};
 use stepscope_core::peripheral::{signal::Sink, trace::steps_in};
-use stepscope_core::sim::{ValidatedScenario, run_watched};
+use stepscope_core::prelude::{ControllerRun, FinishedRun, Record};
+use stepscope_core::sim::run_watched;
 
 /// A run that has ended. It never changes, and any number of threads may use it.
 pub struct RunHandle {
@@ -24,6 +24,11 @@ pub struct RunHandle {
 pub(crate) struct StoredRun {
     run: FinishedRun,
     has_edges: bool,
+}
+
+impl handle::Object for StoredRun {
+    type Handle = RunHandle;
+    const NAME: &'static str = "run";
 }
 
 /// An edge: the levels of all signals from a cycle on, as STEPSCOPE_LEVEL_ bits.
@@ -47,11 +52,11 @@ impl Edge {
     }
 }
 
-/// Reports how many cycles a run has made: first 0, then from time to time, at last all of them. false stops the run. It is
+/// Reports how many cycles a run has made: 0 at the start, then from time to time, and all of them at the end. false stops the run. It is
 /// called in the thread of the run, and must return: no longjmp, no exception.
 pub type Progress = Option<unsafe extern "C" fn(context: *mut c_void, cycles: u64) -> bool>;
 
-/// Options of a run; begin with STEPSCOPE_RUN_OPTIONS.
+/// Options of a run; initialize with STEPSCOPE_RUN_OPTIONS.
 #[repr(C)]
 pub struct RunOptions {
     /// sizeof(stepscope_run_options)
@@ -82,7 +87,7 @@ unsafe impl Sized32 for RawOptions {
     const MIN: usize = offset_of!(Self, context) + size_of::<*mut c_void>();
 }
 
-/// What a controller has done; begin with STEPSCOPE_SUMMARY.
+/// State of a controller at the end of a run, or of a device now; initialize with STEPSCOPE_SUMMARY.
 #[repr(C)]
 pub struct Summary {
     /// sizeof(stepscope_summary)
@@ -178,8 +183,8 @@ pub unsafe extern "C" fn stepscope_run_scenario(
             if !options.is_null() {
                 given = pointer::get_sized("options", options.cast(), given)?;
             }
-            let scenario = handle::get::<ValidatedScenario>(scenario)?;
-            let experiment = scenario.experiment().map_err(Failure::of)?;
+            let scenario = handle::get::<StoredScenario>(scenario)?;
+            let experiment = scenario.0.experiment().map_err(Failure::of)?;
             let has_edges = given.keep_edges != 0;
             let run = run_watched(experiment, has_edges, |cycles| match given.progress {
                 Some(progress) if !progress(given.context, cycles.0) => ControlFlow::Break(()),
@@ -194,7 +199,7 @@ pub unsafe extern "C" fn stepscope_run_scenario(
     }
 }
 
-/// What a controller has done in a run. `controller` counts from 0.
+/// The summary of a controller. `controller` counts from 0.
 ///
 /// Returns STEPSCOPE_RANGE (no such controller, or out->size), _NULL, _HANDLE.
 #[unsafe(no_mangle)]
@@ -235,7 +240,7 @@ pub unsafe extern "C" fn stepscope_run_edges(
 }
 
 /// The steps of a channel, in cycles since reset. Writes at most `capacity` of them to `out`, and their number to `*count`.
-/// `out` NULL with capacity 0 asks for the number alone. `controller` and `channel` count from 0; unused channels have none.
+/// `out` NULL with capacity 0 returns only the count. `controller` and `channel` count from 0; unused channels have none.
 ///
 /// Returns STEPSCOPE_ORDER (edges were not stored), _RANGE (no such controller; channel above 15), _BUFFER (there are more
 /// than `capacity`), _NULL, _HANDLE.

@@ -1,7 +1,7 @@
 //! Scenarios: from JSON, a file, or a preset.
 
-use crate::error::ErrorHandle;
-use crate::status::{FILE, Failure, RANGE, Status, UTF8, checked, guarded};
+use crate::error::{ErrorHandle, guarded};
+use crate::status::{FILE, Failure, RANGE, Status, UTF8, checked};
 use crate::{handle, pointer};
 use std::ffi::c_char;
 use std::fs::File;
@@ -9,6 +9,14 @@ use std::io::Read;
 use std::ptr;
 use stepscope_core::scenario::{MAX_TEXT_BYTES, presets};
 use stepscope_core::sim::ValidatedScenario;
+
+/// What a handle names; see [`ScenarioHandle`].
+pub(crate) struct StoredScenario(pub(crate) ValidatedScenario);
+
+impl handle::Object for StoredScenario {
+    type Handle = ScenarioHandle;
+    const NAME: &'static str = "scenario";
+}
 
 /// A scenario: a motion, a host, a serial line, controllers. It never changes, and any number of threads may use it.
 pub struct ScenarioHandle {
@@ -38,7 +46,7 @@ unsafe fn made(
         guarded(error, || {
             pointer::put("out", out, ptr::null_mut())?;
             let scenario = read()?;
-            pointer::put("out", out, handle::add(scenario))
+            pointer::put("out", out, handle::add(StoredScenario(scenario)))
         })
     }
 }
@@ -100,7 +108,11 @@ pub unsafe extern "C" fn stepscope_scenario_from_preset(
             let name = pointer::text("name", name, usize::MAX)?;
             let preset = presets::all().find(|preset| preset.id == name).ok_or_else(|| {
                 let names: Vec<&str> = presets::all().map(|preset| preset.id).collect();
-                Failure::new(RANGE, "name", format!("unknown preset {name:?}; use one of {}", names.join(", ")))
+                Failure::new(
+                    RANGE,
+                    "name",
+                    format!("unknown preset {name:?}; use one of {}", names.join(", ")),
+                )
             })?;
             Ok(preset.scenario().into())
         })
@@ -110,5 +122,5 @@ pub unsafe extern "C" fn stepscope_scenario_from_preset(
 /// Frees a scenario; its runs and devices live on. NULL is OK; a second time is STEPSCOPE_HANDLE.
 #[unsafe(no_mangle)]
 pub extern "C" fn stepscope_scenario_free(scenario: *mut ScenarioHandle) -> Status {
-    checked(|| handle::free::<ValidatedScenario>(scenario))
+    checked(|| handle::free::<StoredScenario>(scenario))
 }

@@ -1,7 +1,5 @@
 //! Statuses, failures, and the border: no panic crosses it.
 
-use crate::handle;
-use crate::{error::ErrorHandle, pointer};
 use std::any::Any;
 use std::ffi::c_char;
 use std::panic::{self, AssertUnwindSafe};
@@ -68,31 +66,12 @@ impl Failure {
     }
 }
 
-/// Runs a call: its failures and panics become a status, and an error where the caller has room for one.
-///
-/// # Safety
-/// `error` is NULL, or valid for reads and writes.
-pub(crate) unsafe fn guarded(
-    error: *mut *mut ErrorHandle,
-    call: impl FnOnce() -> Result<(), Failure>,
-) -> Status {
-    match caught(call) {
-        Ok(()) => OK,
-        Err(failure) => {
-            let status = failure.status;
-            // SAFETY: as of this function.
-            unsafe { pointer::put_first(error, || handle::add(crate::error::Error::new(failure))) };
-            status
-        }
-    }
-}
-
-/// As [`guarded`], for calls whose status says it all.
+/// Runs a call: its failures and panics become a status.
 pub(crate) fn checked(call: impl FnOnce() -> Result<(), Failure>) -> Status {
     caught(call).err().map_or(OK, |failure| failure.status)
 }
 
-fn caught(call: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+pub(crate) fn caught(call: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
     // The default hook prints, and a library has no output. The library has a standard library of its own, so no other code
     // is concerned.
     static SILENCE: Once = Once::new();

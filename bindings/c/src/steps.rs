@@ -1,12 +1,12 @@
 //! Step times of a plan, and the first difference of two lists of steps.
 
-use crate::error::ErrorHandle;
+use crate::error::{ErrorHandle, guarded};
 use crate::handle;
 use crate::pointer::{self, Buffer};
-use crate::scenario::ScenarioHandle;
-use crate::status::{Failure, PROBLEMS, RANGE, Status, checked, guarded};
+use crate::scenario::{ScenarioHandle, StoredScenario};
+use crate::status::{Failure, PROBLEMS, RANGE, Status, checked};
 use stepscope_core::prelude::{Cycles, Problems, ScheduledStep, first_difference};
-use stepscope_core::sim::{MAX_RECORDS, ValidatedScenario, axis_plan};
+use stepscope_core::sim::{MAX_RECORDS, axis_plan};
 
 /// A step: the cycle in which STEP rises, and its direction.
 #[derive(Clone, Copy)]
@@ -34,7 +34,7 @@ fn refused(problems: &Problems) -> Failure {
 }
 
 /// The steps of an axis as planned, in cycles of the scenario's clock from the start of the motion. Writes at most `capacity`
-/// of them to `out`, and their number, up to 24000000, to `*count`. `out` NULL with capacity 0 asks for the number alone.
+/// of them to `out`, and their number, up to 24000000, to `*count`. `out` NULL with capacity 0 returns only the count.
 /// `controller` and `axis` count from 0.
 ///
 /// Returns STEPSCOPE_PROBLEMS (the scenario is refused, or is no motion), _RANGE (no such controller or axis),
@@ -53,8 +53,8 @@ pub unsafe extern "C" fn stepscope_step_times(
     unsafe {
         guarded(error, || {
             let buffer = Buffer::new(out, capacity, count)?;
-            let scenario = handle::get::<ValidatedScenario>(scenario)?;
-            let experiment = scenario.experiment().map_err(Failure::of)?;
+            let scenario = handle::get::<StoredScenario>(scenario)?;
+            let experiment = scenario.0.experiment().map_err(Failure::of)?;
             let plan = axis_plan(experiment, controller as usize, axis as usize);
             let plan = plan.map_err(|problems| refused(&problems))?;
             if plan.step_count() > MAX_RECORDS / 2 {

@@ -13,8 +13,12 @@ use std::{
 
 const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
 const SANITIZERS: [&str; 2] = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
-const VALGRIND: [&str; 4] =
-    ["--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect,possible"];
+const VALGRIND: [&str; 4] = [
+    "--quiet",
+    "--error-exitcode=9",
+    "--leak-check=full",
+    "--errors-for-leak-kinds=definite,indirect,possible",
+];
 const PROGRAMS: [&str; 4] = ["use.c", "misuse.c", "threads.c", "use.cpp"];
 
 fn prefix() -> PathBuf {
@@ -90,7 +94,8 @@ fn the_headers_have_no_finding() {
         ("g++", "-std=c++20", "cpp.cpp"),
     ] {
         let header = if name == "cpp.cpp" { "stepscope.hpp" } else { "stepscope.h" };
-        let text = format!("#include <{header}>\n#include <stepscope_walk.h>\nint main(void) {{ return 0; }}\n");
+        let text =
+            format!("#include <{header}>\n#include <stepscope_walk.h>\nint main(void) {{ return 0; }}\n");
         fs::write(folder.path().join(name), text).expect("a file");
         call(folder.path(), compiler, [standard, &include, "-c", name].into_iter().chain(WARNINGS));
     }
@@ -124,37 +129,43 @@ fn sanitizers_have_no_finding_with_the_static_library() {
     }
 }
 
-/// Every golden case that is a scenario of its own.
 #[test]
 #[ignore = "needs the installed library"]
 fn golden_digests_are_the_same_in_c() {
-    let golden = own("../../tests/golden");
-    let mut cases: Vec<PathBuf> = fs::read_dir(&golden)
-        .expect("the golden cases")
-        .map(|entry| entry.expect("a case").path())
-        .filter(|case| case.join("scenario.json").exists() && case.join("digest").exists())
-        .collect();
+    let read = |path: PathBuf| fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+    let cases = fs::read_dir(own("../../tests/golden")).expect("the golden cases");
+    let mut cases: Vec<PathBuf> = cases.map(|entry| entry.expect("a case").path()).collect();
     cases.sort();
-    assert!(cases.len() > 80, "{} cases", cases.len());
+    let names = cases.iter().map(|case| {
+        let file = case.join("scenario.json");
+        if file.exists() {
+            file.to_str().expect("UTF-8").to_owned()
+        } else {
+            read(case.join("preset")).trim().to_owned()
+        }
+    });
     let folder = folder();
     compile(folder.path(), &own("tests/programs/digests.c"), &[&library("libstepscope.so")]);
-    let found = call(folder.path(), "./program", cases.iter().map(|case| case.join("scenario.json")));
-    for (case, found) in cases.iter().zip(found.lines()) {
-        let expected = fs::read_to_string(case.join("digest")).expect("a digest");
-        let expected: Vec<&str> = expected.split_whitespace().collect();
-        assert_eq!(found.split(' ').collect::<Vec<_>>(), expected, "{}", case.display());
-    }
+    let found = call(folder.path(), "./program", names);
     assert_eq!(found.lines().count(), cases.len());
+    assert!(cases.len() > 80, "{} cases", cases.len());
+    for (case, found) in cases.iter().zip(found.lines()) {
+        let expected = read(case.join("digest"));
+        assert_eq!(found, expected.split_whitespace().collect::<Vec<_>>().join(" "), "{}", case.display());
+    }
 }
 
-/// The lines of `docs/how-to/c.md`, too, which has the same program.
+/// `docs/how-to/c.md` has the same programs.
 #[test]
 #[ignore = "needs the installed library"]
 fn the_ten_lines_run_as_they_stand() {
     let page = fs::read_to_string(own("../../docs/how-to/c.md")).expect("the page");
     for name in ["turn.json", "turn.c", "turn.cpp"] {
         let text = fs::read_to_string(own("examples").join(name)).expect("an example");
-        assert!(name.ends_with("json") || page.contains(&text), "docs/how-to/c.md does not have {name} as it is");
+        assert!(
+            name.ends_with("json") || page.contains(&text),
+            "docs/how-to/c.md does not have {name} as it is"
+        );
     }
     for source in ["turn.c", "turn.cpp"] {
         let folder = folder();

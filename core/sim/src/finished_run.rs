@@ -132,10 +132,8 @@ fn run_within(
     if steps.is_some_and(|steps| steps > max_records / 2) {
         return Err(too_long());
     }
-    let recording = || Recording {
-        trace: matches!(edges, Edges::Stored(_)).then(Vec::new),
-        digest: Digest::default(),
-    };
+    let recording =
+        || Recording { trace: matches!(edges, Edges::Stored(_)).then(Vec::new), digest: Digest::default() };
     let mut recordings: Vec<Recording> = (0..experiment.controllers()).map(|_| recording()).collect();
     let mut run = experiment.start();
     let mut limits = RunLimits { records: RECORDS_PER_CHECK, ..RunLimits::default() };

@@ -1,6 +1,7 @@
-/* Prints the digest of each controller of the scenarios in the given files. */
+/* Prints the digest of each controller of scenarios: files that end in .json, or presets. */
 #include <inttypes.h>
 #include <stepscope.h>
+#include <string.h>
 
 #include "check.h"
 
@@ -11,7 +12,11 @@ int main(int count, char **files) {
         stepscope_run *run = NULL;
         stepscope_run_options options = STEPSCOPE_RUN_OPTIONS;
         options.keep_edges = i % 2 != 0;
-        stepscope_scenario_from_file(files[i], &scenario, &error);
+        if (strstr(files[i], ".json") != NULL) {
+            stepscope_scenario_from_file(files[i], &scenario, &error);
+        } else {
+            stepscope_scenario_from_preset(files[i], &scenario, &error);
+        }
         stepscope_run_scenario(scenario, &options, &run, &error);
         if (error != NULL) {
             fprintf(stderr, "%s: %s\n", files[i], stepscope_error_text(error));
