@@ -35,10 +35,6 @@ impl Error {
         let lines = failure.lines.iter().map(|(path, message)| (c_text(path), c_text(message)));
         Self { text: c_text(&text.join("\n")), lines: lines.collect() }
     }
-
-    fn part<'a>(lines: &'a [(CString, CString)], index: usize, is_path: bool) -> Option<&'a CString> {
-        lines.get(index).map(|(path, message)| if is_path { path } else { message })
-    }
 }
 
 /// As [`checked`], and with an error where the caller has room for one.
@@ -88,7 +84,8 @@ fn part(error: *const ErrorHandle, index: usize, is_path: bool) -> *const c_char
     let mut found = ptr::null();
     checked(|| {
         let error = handle::get::<Error>(error)?;
-        found = Error::part(&error.lines, index, is_path).map_or(ptr::null(), |text| text.as_ptr());
+        let line = error.lines.get(index).map(|(path, message)| if is_path { path } else { message });
+        found = line.map_or(ptr::null(), |text| text.as_ptr());
         Ok(())
     });
     found
