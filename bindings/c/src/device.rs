@@ -336,10 +336,10 @@ pub unsafe extern "C" fn stepscope_device_receive(
             if !state.await_reply(timeout_cycles)? {
                 return Ok(());
             }
-            let is_question = buffer.is_question();
+            let only_counts = buffer.only_counts();
             let bytes = state.output.replies.front().map_or(&[][..], |reply| &reply.bytes);
             buffer.fill(bytes.iter().copied())?;
-            if !is_question {
+            if !only_counts {
                 state.output.replies.pop_front();
             }
             Ok(())

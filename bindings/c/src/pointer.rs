@@ -96,7 +96,7 @@ impl<T> Buffer<T> {
         Ok(Self { out, capacity, count })
     }
 
-    /// Writes items as far as the buffer goes, and their number. Without a buffer only the number is asked for.
+    /// Writes items as far as the buffer goes, and their number. Without a buffer, writes only the number.
     pub(crate) fn fill(self, items: impl IntoIterator<Item = T>) -> Result<(), Failure> {
         let mut number = 0_usize;
         for item in items {
@@ -115,8 +115,8 @@ impl<T> Buffer<T> {
         Err(Failure::new(BUFFER, "capacity", message))
     }
 
-    /// Whether the caller only asks for the number of items.
-    pub(crate) fn is_question(&self) -> bool {
+    /// Whether the caller has no buffer, and only wants the number of items.
+    pub(crate) fn only_counts(&self) -> bool {
         self.out.is_null()
     }
 }
