@@ -14,7 +14,12 @@ export function element(tag, attributes = {}, ...children) {
   return node;
 }
 
-/** @param {string} text @param {string} label @param {() => void} onClick @param {boolean} [disabled] */
+/** A copy of the icon of another button. @param {string} selector */
+export function iconOf(selector) {
+  return /** @type {Node} */ (document.querySelector(`${selector} > .icon`)).cloneNode(true);
+}
+
+/** @param {Node | string} text @param {string} label @param {() => void} onClick @param {boolean} [disabled] */
 export function button(text, label, onClick, disabled = false) {
   const node = element("button", { type: "button", "aria-label": label, title: label }, text);
   node.disabled = disabled;

@@ -1,5 +1,5 @@
 /** Fields and buttons of the visible frequencies. */
-import { button, byId, element, setText } from "../../dom.js";
+import { button, byId, element, iconOf, setText } from "../../dom.js";
 import { si } from "../../state/number.js";
 import { parseNumber } from "../../state/parse_number.js";
 import { frequency } from "./frequency.js";
@@ -13,9 +13,9 @@ export function createFields(root, { zoom, fit, back, toggleLog, redraw }) {
   const inputs = ["from", "to"].map((name) =>
     element("input", { class: "time", id: `spectrum-${name}`, "aria-describedby": error.id }),
   );
-  const press = (/** @type {string} */ text, /** @type {string} */ label, /** @type {() => void} */ run) =>
+  const press = (/** @type {Node | string} */ text, /** @type {string} */ label, /** @type {() => void} */ run) =>
     button(text, label, run);
-  const backButton = press("Back", "Back to the previous view (Backspace)", back);
+  const backButton = press(iconOf("[data-time=back]"), "Back to the previous view (Backspace)", back);
   const logButton = press("log", "log: logarithmic frequencies (L)", toggleLog);
   logButton.id = "spectrum-log";
   byId("spectrum-scale").parentElement?.after(logButton);
@@ -23,7 +23,7 @@ export function createFields(root, { zoom, fit, back, toggleLog, redraw }) {
     ...inputs.map((input, at) => element("label", {}, `${["from", "to"][at]} `, input)),
     press("+", "Zoom in (+)", () => zoom(0.5)),
     press("−", "Zoom out (−)", () => zoom(2)),
-    press("Fit", "Fit: the whole spectrum (0 or double-click)", fit),
+    press(iconOf("#zoom-fit"), "Fit: the whole spectrum (0 or double-click)", fit),
     backButton,
     error,
   );

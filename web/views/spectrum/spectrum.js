@@ -1,5 +1,5 @@
 /** The spectrum view: harmonics of the ideal and the actual motion as chart and table, and the distortion. */
-import { button, byId, element, setText } from "../../dom.js";
+import { button, byId, element, iconOf, setText } from "../../dom.js";
 import { registerCommands } from "../../shell/commands.js";
 import { si } from "../../state/number.js";
 import { gestures, moved, zoomed } from "../../time/gestures.js";
@@ -58,7 +58,7 @@ export function createSpectrumView({ dispatch, now }) {
     redraw: drawSoon,
   };
   const fields = createFields(byId("spectrum-tools"), actions);
-  const tableButton = button("Table", "Show the harmonics as a table", () => {
+  const tableButton = button(iconOf("#motion-data > summary"), "Show the harmonics as a table", () => {
     tableButton.setAttribute("aria-pressed", String(view.classList.toggle("tabled")));
   });
   const [amplitudes, frequencies] = ["of-amplitudes", "of-frequencies"].map((name) =>
