@@ -168,7 +168,7 @@ fn ctrl_c_stops_the_firmware_and_reports_its_positions() {
     let row = &report["tables"]["controllers"][0];
     assert_eq!((&row["state"], &row["stop_acknowledged"]), (&"STOPPED".into(), &true.into()), "{out}");
     let reported: Vec<_> =
-        (0..2).map(|channel| report["tables"]["positions"][channel]["told"].as_i64()).collect();
+        (0..2).map(|channel| report["tables"]["positions"][channel]["reported"].as_i64()).collect();
     let recording = board.recording();
     let (_, out, _) = run(&["capture", text(&recording), "--json"]);
     let recorded: Value = serde_json::from_str(&out).expect("JSON");

@@ -15,7 +15,7 @@ use std::{
 };
 
 /// Every block needs one of these: `rustdoc` would compile one without a language as Rust.
-const LANGUAGES: [&str; 7] = ["sh", "text", "json", "rust", "python", "toml", "c"];
+const LANGUAGES: [&str; 9] = ["sh", "text", "json", "rust", "python", "toml", "c", "cpp", "cmake"];
 const EXIT_CODE: &str = "# exit code ";
 
 #[derive(Debug, PartialEq)]

@@ -174,7 +174,7 @@ fn ctrl_c_stops_the_motor_and_reports_its_position() {
     assert_ne!(report["tables"]["send"][0]["outcome"], "done");
     let position = |column: &str| report["tables"]["positions"][0][column].as_i64().expect("a number");
     let bounds = position("steps_of_done_ticks")..=position("steps_with_the_next_tick");
-    let reported = position("told");
+    let reported = position("reported");
     assert!(bounds.contains(&reported), "{out}");
     let (_, out, _) = server.end();
     assert!(
