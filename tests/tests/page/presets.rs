@@ -55,19 +55,20 @@ fn digests_links_and_distortions_of_presets_match_the_core() -> Result<()> {
                 "{}",
                 preset.id
             );
+            let pulses = page.pulses().await?;
+            ensure!(pulses.ink("--step").pixels > 200, "{}: {pulses:?}", preset.id);
+            let rows: u32 = page.eval("document.querySelectorAll('#packets tbody tr').length").await?;
+            let sends = known.experiment.segments().is_none();
+            assert_eq!(rows > 0, sends, "{} shows {rows} packets", preset.id);
             if matches!(known.scenario.source, Source::Motion(_)) {
-                // The range of the chart is that of all axes; without the others, the curve fills it.
+                // The range of the chart is that of all axes; the whole curve fills it without the others.
+                page.click("#zoom-fit").await?;
                 let hide = "const other = () => document.querySelector('#motion-axes button:not(.selected)[aria-pressed=true]'); \
                             for (let press = other(); press; press = other()) press.click(); return true;";
                 page.js::<bool>(hide, vec![]).await?;
                 let curve = async || Ok(page.canvas("chart-position").await?.has_curve("--ideal").ok());
                 page.eventually(&format!("the ideal curve of {}", preset.id), curve).await?;
             }
-            let pulses = page.pulses().await?;
-            ensure!(pulses.ink("--step").pixels > 200, "{}: {pulses:?}", preset.id);
-            let rows: u32 = page.eval("document.querySelectorAll('#packets tbody tr').length").await?;
-            let sends = known.experiment.segments().is_none();
-            assert_eq!(rows > 0, sends, "{} shows {rows} packets", preset.id);
             periodic += u32::from(distortion(&page, preset, &known).await?);
         }
         ensure!(periodic > 0, "no preset repeats its motion");
