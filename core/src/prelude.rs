@@ -1,9 +1,11 @@
 //! What most programs need, for the enabled features.
 //!
 //! ```
+//! use stepscope_core::peripheral::config::{Bus, SerialLine};
 //! use stepscope_core::prelude::*;
 //!
-//! let (mut device, mut trace) = (Device::new(&Config::default()), Vec::<Record>::new());
+//! let config = Config::new(16_000_000, &Bus::default(), &SerialLine::default()).expect("valid defaults");
+//! let (mut device, mut trace) = (Device::new(&config), Vec::<Record>::new());
 //! assert_eq!(device.clock(true, &mut trace), device.levels());
 //! assert_eq!(device.positions(), [0]);
 //! ```

@@ -76,6 +76,17 @@ fn tolerance() -> impl Strategy<Value = Tolerance> {
     })
 }
 
+#[test]
+fn a_table_counts_the_bytes_of_its_commands_on_the_line() {
+    let constant = Move::Constant(Constant { distance: Distance::Steps(100.0), speed: steps_s(800.0) });
+    let table = kept(vec![constant], Form::Exact, EntryFormat::TICKS);
+    let entries: Vec<_> =
+        table.entries.iter().map(|entry| (entry.interval, entry.count, entry.add)).collect();
+    assert_eq!(entries, [(0, 0, 1), (10_000, 2, 10_000), (20_000, 98, 0)]);
+    // A block of 5 bytes: the direction; and twice a number, the object and three arguments.
+    assert_eq!(table.wire_bytes(), Some(5 + 3 + (2 + 2 + 1 + 2) + (2 + 3 + 2 + 1)));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 

@@ -184,14 +184,14 @@ fn only_an_earlier_build_is_removed() {
 #[test]
 fn files_for_later_attributes_are_built_but_not_part_of_the_opening() {
     let page = "<html data-build=\"development\"><head>\
-                <script type=\"module\" src=\"main.js\" data-study-worker=\"engine/w.js\" data-recordings-core=\"pkg/x.wasm\"></script></head>\
+                <script type=\"module\" src=\"main.js\" data-capture-worker=\"engine/w.js\" data-recordings-core=\"pkg/x.wasm\"></script></head>\
                 <span id=\"version\">development</span>";
     let site = site(&[("index.html", page)]);
     let bundles = bundles("M");
     let built = site.texts_of_build(&bundles, "1.2.3", Some("abc")).unwrap();
     assert!(
         built["index.html"]
-            .contains("data-study-worker=\"assets/w.W.js\" data-recordings-core=\"assets/x.X.wasm\"")
+            .contains("data-capture-worker=\"assets/w.W.js\" data-recordings-core=\"assets/x.X.wasm\"")
     );
     assert!(built["sw.js"].contains("assets/x.X.wasm"), "offline use needs it");
     let parts = site.parts(&bundles);
