@@ -105,8 +105,7 @@ export function createCornerHandles(canvas, scale, { dispatch, now }, onRelease)
 
   /** @param {HTMLElement} node @param {Point} center */
   function put(node, { x, y }) {
-    node.style.left = `${x.toFixed(1)}px`;
-    node.style.top = `${(canvas.offsetTop + y).toFixed(1)}px`;
+    node.style.translate = `${x.toFixed(1)}px ${(canvas.offsetTop + y).toFixed(1)}px`;
     node.hidden = !plot || x < plot.left - 1 || x > plot.right + 1;
   }
 
