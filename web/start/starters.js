@@ -17,6 +17,8 @@ const STARTERS = [
         page.dispatch({ type: "study", study: "tables" });
         void reveal(page, "study");
       } else openNamed(page, "song-2021-one-turn", "tstudy.ytables");
+      // The user's own experiment keeps its step generation.
+      if (loadScenario() === null) page.dispatch({ type: "edit", path: "source.motion.engine", value: "segments" });
       focusField('input[data-path^="source.motion.axes[0].moves[0]"]');
     },
   },

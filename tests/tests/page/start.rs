@@ -13,6 +13,7 @@ use crate::{
 
 const FOCUS: &str = "document.activeElement.dataset.path || document.activeElement.id";
 const WELCOME: &str = "document.getElementById('welcome').checkVisibility()";
+const ENGINE: &str = "document.querySelector('[data-path=\"source.motion.engine\"]').value";
 const ESCAPE: char = '\u{e00c}';
 
 fn preset(id: &str) -> Result<&'static Preset> {
@@ -49,6 +50,9 @@ fn new_visitors_see_three_working_cards() -> Result<()> {
                 page.until(&format!("({FOCUS}).startsWith('{focus}')")).await.context(title)?;
                 ensure!(page.eval::<bool>("document.getElementById('sheet').open").await? == (width >= 900));
                 page.until(&format!("document.getElementById('{view}')?.checkVisibility()")).await?;
+                if title == "Plan a move" {
+                    page.until_equal(ENGINE, &json!("segments")).await?;
+                }
                 ensure!(!page.eval::<bool>(WELCOME).await?, "the cards are still there");
                 page.open("").await?;
                 ensure!(!page.eval::<bool>(WELCOME).await?, "the cards are back");
