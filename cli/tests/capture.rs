@@ -276,7 +276,7 @@ fn reports_the_readable_part_of_a_truncated_file() {
     let (code, out, err) = stepscope(&["capture", "-"], "a word or two\n");
     assert_eq!((code, out.as_str()), (Some(2), ""));
     assert!(
-        err.contains("unknown format, beginning with “a word or two”; the closest formats are "),
+        err.contains("unknown format, beginning with “a word or two”; use a value change dump (.vcd), "),
         "{err}"
     );
     let (code, _, err) = stepscope(&["capture", "-"], "");

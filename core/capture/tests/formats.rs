@@ -344,6 +344,8 @@ fn bytes_in_hexadecimal_are_read() {
 #[test]
 fn tables_of_levels_of_other_programs_are_read() {
     let rows = "0:0 995:2 1000:3 1002:2 2000:3 2002:0 end 2002";
+    let no_names =
+        "- the table has no column names: the first column is read as the time, all others as channels";
     check(&[
         // DSView: comments, only rows with a change, decimals without trailing zeros.
         (
@@ -358,6 +360,11 @@ fn tables_of_levels_of_other_programs_are_read() {
             &format!("LevelsCsv 1/1000000 [STEP DIR] {rows}"),
         ),
         ("time_s;A\n0,5;0\n0,75;1\n", "LevelsCsv 1/100 [A] 50:0 75:1 end 75"),
+        // A comma in a name, in quotation marks or as a decimal comma does not separate.
+        ("time_s;STEP (a,b);DIR\n0.000;0;0\n0.001;1;0\n", "LevelsCsv 1/1000 [STEP (a,b) DIR] 0:0 1:1 end 1"),
+        ("\"STEP,X\";time_s;DIR\n0;0.000;0\n1;0.001;0\n", "LevelsCsv 1/1000 [STEP,X DIR] 0:0 1:1 end 1"),
+        ("0,000;0;0\n0,001;1;0\n", &format!("LevelsCsv 1/1000 [D0 D1] 0:0 1:1 end 1\n{no_names}")),
+        ("0,000\t0\t0\n0,001\t1\t0\n", &format!("LevelsCsv 1/1000 [D0 D1] 0:0 1:1 end 1\n{no_names}")),
         (
             "time_s,A\n0,5,0\n0,75,1\n",
             "LevelsCsv [A] end 0\n! line 2: “0,5,0” has one field more than the header, probably because of a decimal comma; use decimal points, or semicolons between fields",
@@ -605,7 +612,7 @@ fn annotations_of_sigrok_are_read() {
              2000-2100 uart-1: Start bit\n2100-2900 uart-1: 42\n2900-3000 uart-1: Frame error\n",
             &format!(
                 "Annotations [uart-1] 0:0:4a 2000:0:42! end 2000\n\
-                 - skipped other annotations: Start bit, 1, Stop bit, Start bit, Frame error\n{unnamed}"
+                 - skipped other annotations: 1, Stop bit\n{unnamed}"
             ),
         ),
         (
@@ -618,10 +625,7 @@ fn annotations_of_sigrok_are_read() {
             "0-10 UART: RX bits: Start bit\n5-15 UART: TX bits: Start bit\n15-95 UART: TX data: 42\n\
              10-90 UART: RX data: 4A\n95-105 UART: TX warnings: Frame error\n100-110 UART: RX bits: Start bit\n\
              110-190 UART: RX data: 43\n",
-            &format!(
-                "Annotations [RX TX] 0:0:4a 5:1:42! 100:0:43 end 100\n\
-                 - skipped other annotations: Start bit, Start bit, Frame error, Start bit\n{both}"
-            ),
+            &format!("Annotations [RX TX] 0:0:4a 5:1:42! 100:0:43 end 100\n{both}"),
         ),
         (
             "10-90 UART: RX data: 4A\n5-85 UART: TX data: 42\n2-9 UART: RX data: 43\n",
@@ -760,7 +764,7 @@ fn an_unknown_file_is_refused_with_a_fix() {
         (b"\xef\xbb\xbf\n", "the file is empty; record or export again"),
         (
             b"Dear all,\nhere are the numbers",
-            "unknown format, beginning with “Dear all,”; the closest formats are ",
+            "unknown format, beginning with “Dear all,”; use a value change dump (.vcd), ",
         ),
         (b"\x7fELF\x02\x01\0\0", unknown),
         (b"\xff\xfet\0i\0m\0e\0", "the text is UTF-16; save it as UTF-8"),
@@ -782,7 +786,7 @@ fn an_unknown_file_is_refused_with_a_fix() {
 }
 
 #[test]
-fn an_unknown_format_names_the_three_nearest_ones_and_their_needs() {
+fn an_unknown_format_names_up_to_three_closest_ones_and_their_needs() {
     for (text, expected) in [
         (
             "STEP,DIR,speed\n0,1,5\n1,1,5\n",
@@ -799,7 +803,6 @@ fn an_unknown_format_names_the_three_nearest_ones_and_their_needs() {
     ] {
         let error = read_bytes(text).error.expect("it is refused").message;
         assert!(error.starts_with(expected), "{error}");
-        assert_eq!(error.matches("; ").count(), 3, "{error}");
     }
 }
 

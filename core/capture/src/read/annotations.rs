@@ -20,7 +20,8 @@ pub(super) struct Annotations {
     /// Whether the lines have samples; unknown before the first.
     timed: Option<bool>,
     lines: BTreeMap<u8, Line>,
-    is_data: bool,
+    /// Bytes without a start bit are timed by their first data bit.
+    has_late_times: bool,
     is_unnamed: bool,
     /// The base depends on all values together.
     values: Vec<Value>,
@@ -32,7 +33,8 @@ pub(super) struct Annotations {
     others: Names,
 }
 
-/// Up to 8 digits of a byte: three of 4 bits or eight of 1 bit, and their number.
+/// Up to 8 digits of a byte: three of 4 bits or eight of 1 bit, and above them (from bit 12) their number. Packed, because a
+/// recording has millions.
 #[derive(Clone, Copy)]
 struct Value(u16);
 
@@ -134,7 +136,7 @@ impl Annotations {
             recorder,
             timed: None,
             lines: BTreeMap::new(),
-            is_data: false,
+            has_late_times: false,
             is_unnamed: false,
             values: Vec::new(),
             digits: Digits::new(),
@@ -214,8 +216,8 @@ impl Annotations {
         Err(format!("byte {wrong} (the first is 0) is not {}; print all bytes with format=hex", base.name()))
     }
 
-    /// Skips an annotation that is not a byte; uses start bits and frame errors.
-    fn skip(&mut self, annotation: &Annotation, may_be_data: bool) -> Result<(), String> {
+    /// Takes an annotation that is not a byte: start bits and frame errors are used, others are skipped.
+    fn take_other(&mut self, annotation: &Annotation, may_be_data: bool) -> Result<(), String> {
         let text = annotation.text.to_lowercase();
         self.is_text |= may_be_data && (annotation.text.chars().count() == 1 || is_control(&annotation.text));
         self.has_ambiguous_bits |= annotation.class.is_empty() && matches!(text.as_str(), "0" | "1");
@@ -229,8 +231,9 @@ impl Annotations {
             if let Some(byte) = last.and_then(|(at, _)| self.recorder.capture.bytes.get_mut(at)) {
                 byte.framing_error = true;
             }
+        } else {
+            self.others.add(&annotation.text);
         }
-        self.others.add(&annotation.text);
         Ok(())
     }
 
@@ -260,14 +263,14 @@ impl Reader for Annotations {
         }
         let may_be_data = annotation.may_be_data(self.has_bits);
         let value = Value::of(annotation.text.as_bytes()).filter(|_| may_be_data);
-        let Some(value) = value else { return self.skip(&annotation, may_be_data) };
+        let Some(value) = value else { return self.take_other(&annotation, may_be_data) };
         let channel = self.channel(&annotation)?;
         let index = self.recorder.capture.bytes.len();
         let Line { start, last } = core::mem::take(self.line(channel));
         let tick = match (annotation.samples, start) {
             (Some(_), Some(start)) => start,
             (Some((from, _)), None) => {
-                self.is_data = true;
+                self.has_late_times = true;
                 from
             }
             (None, _) => index as u64,
@@ -289,7 +292,7 @@ impl Reader for Annotations {
         let found = self.set_bytes();
         self.recorder.sort_bytes();
         self.recorder.note_skipped("other annotations", &self.others);
-        if self.is_data {
+        if self.has_late_times {
             self.recorder
                 .note("bytes without an annotated start bit are timed by their first data bit, one bit late");
         }
@@ -303,13 +306,13 @@ impl Reader for Annotations {
         if self.is_unnamed && !is_empty {
             self.recorder.note("no annotation names RX or TX: all bytes are assigned to one line");
         }
-        let missing = if found.is_err() {
+        let result = if found.is_err() {
             found
         } else if is_empty {
             Err(NO_BYTES.into())
         } else {
             Ok(())
         };
-        (self.recorder.finish(), missing)
+        (self.recorder.finish(), result)
     }
 }

@@ -64,6 +64,16 @@ impl Decimal {
         if has_digit { number.shifted(exponent) } else { None }
     }
 
+    /// Like [`Self::parse`], also with a decimal comma.
+    pub(super) fn parse_with_comma(text: &[u8]) -> Option<Self> {
+        Self::parse(text).or_else(|| {
+            let comma = text.iter().position(|byte| *byte == b',')?;
+            let mut text = text.to_vec();
+            *text.get_mut(comma)? = b'.';
+            Self::parse(&text)
+        })
+    }
+
     pub(super) fn shifted(self, exponent: i32) -> Option<Self> {
         let places = i64::from(self.places) - i64::from(exponent);
         if let Ok(places) = u32::try_from(places) {

@@ -9,8 +9,15 @@ use super::{
 use crate::capture::Format;
 use crate::names::{Kind, Meaning};
 
-pub(super) const UNKNOWN: &str = "unknown format; use a value change dump (.vcd), a session or a table of sigrok (.sr, .csv), \
-    another table of levels, positions or bytes (.csv), a hex dump, a serial log, or step commands of Klipper";
+macro_rules! formats {
+    () => {
+        "use a value change dump (.vcd), a session or a table of sigrok (.sr, .csv), another table of levels, positions or \
+         bytes (.csv), a hex dump, a serial log, or step commands of Klipper"
+    };
+}
+
+const USE_FORMATS: &str = formats!();
+pub(super) const UNKNOWN: &str = concat!("unknown format; ", formats!());
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Detected {
@@ -68,7 +75,8 @@ pub(super) fn detect(head: &[u8], base: Option<Base>) -> Result<Detected, String
         return Err(SCOPE.into());
     }
     of_table.or_else(|| by_rows(if table.is_empty() { &lines } else { table })).ok_or_else(|| {
-        format!("unknown format, beginning with {}; {}", quoted(first), nearest::nearest(&lines))
+        let formats = nearest::nearest(&lines).unwrap_or_else(|| USE_FORMATS.into());
+        format!("unknown format, beginning with {}; {formats}", quoted(first))
     })
 }
 
@@ -239,8 +247,8 @@ fn by_numbers(lines: &[&[u8]]) -> Option<Option<Detected>> {
         let found = Detected { table: Some(table), ..Detected::of(Format::HexBytes) };
         return Some((!may_be_positions || hex_table::is_hexadecimal(lines, table)).then_some(found));
     }
-    let number = |field: &&[u8]| Decimal::parse(field);
-    let times: Vec<Decimal> = rows.iter().map(|row| row.first().and_then(number)).collect::<Option<_>>()?;
+    let time = |row: &Vec<&[u8]>| Decimal::parse_with_comma(row.first()?);
+    let times: Vec<Decimal> = rows.iter().map(time).collect::<Option<_>>()?;
     let places = times.iter().map(|time| time.places).max()?;
     let ticks: Vec<i128> = times.iter().filter_map(|time| Some(time.with_places(places)?.mantissa)).collect();
     let rise = ticks.len() == rows.len() && ticks.windows(2).all(|pair| pair.first() < pair.last());
@@ -254,7 +262,7 @@ fn by_numbers(lines: &[&[u8]]) -> Option<Option<Detected>> {
     }
     // Lines of two bytes look like times and positions.
     let bytes = lines.iter().all(|line| hex::is_line(line)) && !lines.iter().any(|line| line.contains(&b'.'));
-    if columns == 2 && !bytes && rest().all(|field| number(field).is_some()) {
+    if columns == 2 && !bytes && rest().all(|field| Decimal::parse(field).is_some()) {
         return found(Format::PositionsCsv);
     }
     None

@@ -4,7 +4,6 @@ use super::{decimal::Decimal, recorder::quoted};
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 const MAX_FIELDS: usize = 1024;
-/// The first of these in a line is its separator.
 pub(super) const SEPARATORS: [u8; 4] = *b",;\t|";
 
 pub(super) struct Fields {
@@ -32,8 +31,8 @@ impl Fields {
         }
         let Some((_, reader)) = &mut self.reader else { return Ok(()) };
         reader.reset();
-        let (result, _, written, ends) = reader.read_record(line, &mut self.text, &mut self.ends);
-        let (mut result, mut count) = (result, ends);
+        let (mut result, _, written, mut count) = reader.read_record(line, &mut self.text, &mut self.ends);
+        // The line has no newline, which completes the record.
         if matches!(result, ReadRecordResult::InputEmpty) {
             let text = self.text.get_mut(written..).unwrap_or_default();
             let ends = self.ends.get_mut(count..).unwrap_or_default();
@@ -51,7 +50,8 @@ impl Fields {
             ReadRecordResult::InputEmpty if !line.is_empty() => {
                 Err("a quotation mark is not closed in this line; add the missing one".into())
             }
-            _ => Ok(()),
+            // An empty line has no fields, and `text` holds the whole line.
+            ReadRecordResult::InputEmpty | ReadRecordResult::End | ReadRecordResult::OutputFull => Ok(()),
         }
     }
 
@@ -93,9 +93,29 @@ impl Fields {
     }
 }
 
+/// The first separator of a line outside quotation marks. A comma that is only in numbers between other separators is a
+/// decimal comma.
 pub(super) fn separator(line: &[u8]) -> u8 {
-    let found = SEPARATORS.into_iter().find(|separator| line.contains(separator));
+    let first = first_unquoted(line, |byte| SEPARATORS.contains(&byte));
+    let found = match first {
+        Some(b',') => first_unquoted(line, |byte| byte != b',' && SEPARATORS.contains(&byte))
+            .filter(|other| has_decimal_commas(line, *other))
+            .or(first),
+        _ => first,
+    };
     found.unwrap_or(if line.trim_ascii().contains(&b' ') { b' ' } else { b',' })
+}
+
+fn first_unquoted(line: &[u8], is: impl Fn(u8) -> bool) -> Option<u8> {
+    let mut is_quoted = false;
+    line.iter().copied().find(|&byte| {
+        is_quoted ^= byte == b'"';
+        !is_quoted && is(byte)
+    })
+}
+
+fn has_decimal_commas(line: &[u8], separator: u8) -> bool {
+    fields(line, separator).all(|field| !field.contains(&b',') || Decimal::parse_with_comma(field).is_some())
 }
 
 /// Does not handle quotation marks; blanks separate in any number.

@@ -1,4 +1,4 @@
-//! Names the nearest formats of an unknown file, and what each one needs.
+//! Names the closest formats of an unknown file, and what each one needs.
 
 use super::fields::{fields, separator};
 use super::{clock::Stamp, decimal::Decimal, hex, levels::Layout, recorder::quoted, row};
@@ -6,14 +6,15 @@ use crate::short_sort::ShortSort as _;
 
 const MAX_NAMED: usize = 3;
 
-pub(super) fn nearest(lines: &[&[u8]]) -> String {
+/// `None` if no line fits any format.
+pub(super) fn nearest(lines: &[&[u8]]) -> Option<String> {
     let formats: [(usize, String); 7] = [
         (share(lines, is_levels), levels(lines)),
         (
             share(lines, is_numbers),
             "a table of positions (needs column names such as time_us,position)".into(),
         ),
-        (share(lines, is_bytes), format!("bytes in hexadecimal ({})", not_bytes(lines))),
+        (share(lines, hex::is_line), format!("bytes in hexadecimal ({})", not_bytes(lines))),
         (share(lines, is_timed), format!("a serial log with hexadecimal bytes ({})", not_bytes(lines))),
         (share(lines, is_timed_byte), "a table of bytes (needs column names such as t_us,bytes)".into()),
         (
@@ -26,10 +27,14 @@ pub(super) fn nearest(lines: &[&[u8]]) -> String {
                 .into(),
         ),
     ];
-    let mut formats: Vec<(usize, String)> = formats.into();
+    let mut formats: Vec<(usize, String)> = formats.into_iter().filter(|(share, _)| *share > 0).collect();
     formats.sort_short_by_key(|(share, _)| core::cmp::Reverse(*share));
     let named: Vec<String> = formats.into_iter().take(MAX_NAMED).map(|(_, format)| format).collect();
-    format!("the closest formats are {}", named.join("; "))
+    match named.as_slice() {
+        [] => None,
+        [only] => Some(format!("the closest format is {only}")),
+        _ => Some(format!("the closest formats are {}", named.join("; "))),
+    }
 }
 
 /// Share of the lines for which `is` returns true, in percent.
@@ -50,10 +55,6 @@ fn is_levels(line: &[u8]) -> bool {
 fn is_numbers(line: &[u8]) -> bool {
     let all = split(line);
     all.len() > 1 && all.iter().all(|field| Decimal::parse(field).is_some())
-}
-
-fn is_bytes(line: &[u8]) -> bool {
-    hex::is_line(line)
 }
 
 fn is_timed(line: &[u8]) -> bool {

@@ -119,7 +119,7 @@ impl Times {
     }
 
     pub(super) fn tick(&mut self, text: &[u8], recorder: &mut Recorder) -> Result<u64, String> {
-        let time = match (number(text), self.unit) {
+        let time = match (Decimal::parse_with_comma(text), self.unit) {
             (Some(time), TimeUnit::Seconds(0)) => time,
             (Some(time), TimeUnit::Seconds(places)) => Decimal { places: time.places + places, ..time },
             (Some(time), TimeUnit::Cycles) => {
@@ -260,15 +260,6 @@ impl Times {
             ));
         }
     }
-}
-
-fn number(text: &[u8]) -> Option<Decimal> {
-    Decimal::parse(text).or_else(|| {
-        let comma = text.iter().position(|byte| *byte == b',')?;
-        let mut text = text.to_vec();
-        *text.get_mut(comma)? = b'.';
-        Decimal::parse(&text)
-    })
 }
 
 #[cfg(test)]
