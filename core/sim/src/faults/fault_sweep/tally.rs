@@ -83,7 +83,7 @@ impl Tally {
 
     pub(super) fn add_alignment(&mut self, alignment: &Alignment) {
         self.wrong += alignment.wrong;
-        self.duplicated += alignment.extra;
+        self.duplicated += alignment.duplicated;
         self.missing += alignment.missing;
         self.wrong_steps += alignment.wrong_steps;
         self.missing_steps += alignment.missing_steps;
