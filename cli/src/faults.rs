@@ -18,9 +18,8 @@ use stepscope_core::sim::fault_sweep::{FaultSweep, Tally};
 const BATCH: u64 = 64;
 /// Seeds have 32 bits.
 const SEEDS: u64 = 1 << 32;
-/// The protocol that must never cause wrong steps.
-const FRAMED: &str = "framed";
-const MAX_NAMED: usize = 8;
+/// Maximum number of seeds with errors per printed line; JSON has all.
+const MAX_PRINTED: usize = 8;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -80,6 +79,7 @@ impl Which {
 #[derive(Default)]
 struct Report {
     tally: Tally,
+    /// Seeds with errors, rising after the last [`Report::join`].
     wrong: Vec<u32>,
 }
 
@@ -94,14 +94,14 @@ impl Report {
     fn join(&mut self, mut other: Self) {
         self.tally += other.tally;
         self.wrong.append(&mut other.wrong);
-        self.wrong.sort_unstable();
-        self.wrong.truncate(MAX_NAMED);
+        // Mostly rising already, which is fast.
+        self.wrong.sort();
     }
 }
 
 pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     let base = arguments.file.as_deref().map(scenarios::read).transpose()?;
-    let path = arguments.file.clone().unwrap_or_else(|| PathBuf::from("the default scenario"));
+    let path = arguments.file.clone().unwrap_or_else(|| PathBuf::from(scenarios::DEFAULT));
     let sweep = |protocol| {
         let mut base = base.clone().unwrap_or_else(|| FaultSweep::small(protocol));
         base.line.protocol = protocol;
@@ -119,11 +119,10 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
     let mut reports = Vec::new();
     let mut progress = Progress::new("faults", arguments.work.show.progress).with_parts(protocols.len());
     for &protocol in protocols {
-        let (name, sweep) = (if protocol == Protocol::Framed { FRAMED } else { "raw" }, sweep(protocol)?);
-        let threads = arguments.work.threads;
-        let report = run(&sweep, &seeds, threads, &mut progress).map_err(Failure::threads)?;
+        let report = run(&sweep(protocol)?, &seeds, arguments.work.threads, &mut progress);
+        let report = report.map_err(Failure::threads)?;
         progress.next_part();
-        reports.push((name, report.map_err(|problems| Failure::Scenario(path.clone(), problems))?));
+        reports.push((protocol, report.map_err(|problems| Failure::Scenario(path.clone(), problems))?));
     }
     progress.end(format_args!("{} seeds", seeds.end - seeds.start), &[]);
     if arguments.json.json {
@@ -132,7 +131,9 @@ pub(crate) fn faults(arguments: &Arguments) -> Result<(), Failure> {
         print(&reports).map_err(Failure::output)?;
     }
     // Raw lines are expected to have wrong steps.
-    match reports.iter().find(|(name, report)| *name == FRAMED && report.tally.is_wrong()) {
+    let is_failure =
+        |protocol: Protocol, report: &Report| protocol == Protocol::Framed && report.tally.is_wrong();
+    match reports.iter().find(|(protocol, report)| is_failure(*protocol, report)) {
         Some((_, report)) => {
             let count = report.tally.wrong_seeds;
             let s = plural(count);
@@ -198,67 +199,100 @@ fn write(path: &Path, scenarios: &[Scenario], is_file: bool, out: Option<&Path>)
     })
 }
 
-/// Name in JSON, text, whether it applies to raw lines, value.
-type Row = (&'static str, &'static str, bool, fn(&Tally) -> u64);
+/// A count of the report.
+struct Row {
+    /// In JSON.
+    name: &'static str,
+    text: &'static str,
+    is_framed_only: bool,
+    value: fn(&Tally) -> u64,
+}
+
+impl Row {
+    const fn all(name: &'static str, text: &'static str, value: fn(&Tally) -> u64) -> Self {
+        Self { name, text, is_framed_only: false, value }
+    }
+
+    /// Only of framed lines.
+    const fn framed(name: &'static str, text: &'static str, value: fn(&Tally) -> u64) -> Self {
+        Self { name, text, is_framed_only: true, value }
+    }
+
+    /// `None` if the protocol has no such count.
+    fn value(&self, protocol: Protocol, report: &Report) -> Option<u64> {
+        (protocol == Protocol::Framed || !self.is_framed_only).then(|| (self.value)(&report.tally))
+    }
+}
+
 const ROWS: &[Row] = &[
-    ("seeds", "seeds", true, |tally| tally.seeds),
-    ("seeds_with_errors", "seeds with errors", true, |tally| tally.wrong_seeds),
-    ("sent", "frames or packets sent", true, |tally| tally.frames),
-    ("repeated", "  repeated", false, |tally| tally.repeated),
-    ("rejected_crc", "  rejected: CRC", false, |tally| tally.bad_check),
-    ("rejected_short_packet", "  rejected: SHORT_PACKET", true, |tally| tally.short),
-    ("rejected_overlong", "  rejected: OVERLONG", false, |tally| tally.overlong),
-    ("refused", "  refused", true, |tally| tally.refused),
-    ("acknowledged_again", "  acknowledged again", false, |tally| tally.acknowledged_again),
-    ("bytes_lost_framing", "bytes lost: FRAMING", true, |tally| tally.framing),
-    ("replies", "replies sent", false, |tally| tally.replies),
-    ("replies_lost", "  lost or damaged", false, |tally| tally.replies_lost),
-    ("host_crashes", "crashes of the host", false, |tally| tally.crashes),
-    ("ticks_commanded", "ticks commanded", true, |tally| tally.commanded),
-    ("ticks_executed", "  executed", true, |tally| tally.executed),
-    ("ticks_not_reached", "  not reached: host gave up", false, |tally| tally.unreached),
-    ("ticks_missing", "  missing", true, |tally| tally.missing),
-    ("ticks_wrong", "  wrong", true, |tally| tally.wrong),
-    ("ticks_duplicated", "  duplicated or not commanded", true, |tally| tally.duplicated),
-    ("wrong_steps", "wrong steps", true, |tally| tally.wrong_steps),
-    ("missing_steps", "steps of missing ticks", true, |tally| tally.missing_steps),
-    ("position_error_steps", "error of final positions, steps", true, |tally| tally.position_error),
-    ("given_up_no_reply", "given up: no reply", false, |tally| tally.given_up),
-    ("given_up_in_reach", "  although bit rates differ by up to 4 %", false, |tally| tally.given_up_in_reach),
-    ("given_up_other", "given up: other reasons", false, |tally| tally.stuck),
+    Row::all("seeds", "seeds", |tally| tally.seeds),
+    Row::all("seeds_with_errors", "seeds with errors", |tally| tally.wrong_seeds),
+    Row::all("sent", "frames or packets sent", |tally| tally.frames),
+    Row::framed("repeated", "  repeated", |tally| tally.repeated),
+    Row::framed("rejected_crc", "  rejected: CRC", |tally| tally.bad_check),
+    Row::all("rejected_short_packet", "  rejected: SHORT_PACKET", |tally| tally.short),
+    Row::framed("rejected_overlong", "  rejected: OVERLONG", |tally| tally.overlong),
+    Row::all("refused", "  refused", |tally| tally.refused),
+    Row::framed("acknowledged_again", "  acknowledged again", |tally| tally.acknowledged_again),
+    Row::all("bytes_lost_framing", "bytes lost: FRAMING", |tally| tally.framing),
+    Row::framed("replies", "replies sent", |tally| tally.replies),
+    Row::framed("replies_lost", "  lost or damaged", |tally| tally.replies_lost),
+    Row::framed("host_crashes", "crashes of the host", |tally| tally.crashes),
+    Row::all("ticks_commanded", "ticks commanded", |tally| tally.commanded),
+    Row::all("ticks_executed", "  executed", |tally| tally.executed),
+    Row::framed("ticks_not_reached", "  not reached: host gave up", |tally| tally.unreached),
+    Row::all("ticks_missing", "  missing", |tally| tally.missing),
+    Row::all("ticks_wrong", "  wrong", |tally| tally.wrong),
+    Row::all("ticks_duplicated", "  duplicated or not commanded", |tally| tally.duplicated),
+    Row::all("wrong_steps", "wrong steps", |tally| tally.wrong_steps),
+    Row::all("missing_steps", "steps of missing ticks", |tally| tally.missing_steps),
+    Row::all("position_error_steps", "error of final positions, steps", |tally| tally.position_error),
+    Row::framed("given_up_no_reply", "given up: no reply", |tally| tally.given_up),
+    Row::framed("given_up_in_reach", "  although bit rates differ by up to 4 %", |tally| {
+        tally.given_up_in_reach
+    }),
+    Row::framed("given_up_other", "given up: other reasons", |tally| tally.stuck),
 ];
 
-fn tables(reports: &[(&str, Report)]) -> Tables {
+const fn protocol_name(protocol: Protocol) -> &'static str {
+    match protocol {
+        Protocol::Raw => "raw",
+        Protocol::Framed => "framed",
+    }
+}
+
+fn tables(reports: &[(Protocol, Report)]) -> Tables {
     let counts = reports.iter().flat_map(|(protocol, report)| {
-        let shown = ROWS.iter().filter(move |(_, _, everywhere, _)| *everywhere || *protocol == FRAMED);
-        shown.map(move |(name, _, _, value)| {
-            json!({ "protocol": protocol, "count": name, "value": value(&report.tally) })
-        })
+        let values = ROWS.iter().filter_map(|row| Some((row.name, row.value(*protocol, report)?)));
+        values.map(
+            |(name, value)| json!({ "protocol": protocol_name(*protocol), "count": name, "value": value }),
+        )
     });
     let wrong = reports.iter().flat_map(|(protocol, report)| {
+        let protocol = protocol_name(*protocol);
         report.wrong.iter().map(move |seed| json!({ "protocol": protocol, "seed": seed }))
     });
     Tables::of("faults").with("counts", counts).with("wrong_seeds", wrong)
 }
 
-fn print(reports: &[(&str, Report)]) -> io::Result<()> {
+fn print(reports: &[(Protocol, Report)]) -> io::Result<()> {
     let mut out = terminal::out();
     write!(out, "{:42}", "")?;
-    reports.iter().try_for_each(|(name, _)| write!(out, "{name:>14}"))?;
+    reports.iter().try_for_each(|(protocol, _)| write!(out, "{:>14}", protocol_name(*protocol)))?;
     writeln!(out)?;
-    for (_, text, everywhere, value) in ROWS {
-        write!(out, "{text:42}")?;
+    for row in ROWS {
+        write!(out, "{:42}", row.text)?;
         for (protocol, report) in reports {
-            let shown = *everywhere || *protocol == FRAMED;
-            let value = if shown { value(&report.tally).to_string() } else { "-".to_owned() };
+            let value =
+                row.value(*protocol, report).map_or_else(|| "-".to_owned(), |value| value.to_string());
             write!(out, "{value:>14}")?;
         }
         writeln!(out)?;
     }
-    for (name, report) in reports.iter().filter(|(_, report)| !report.wrong.is_empty()) {
-        let seeds: Vec<String> = report.wrong.iter().map(u32::to_string).collect();
-        let more = if report.tally.wrong_seeds > seeds.len() as u64 { " …" } else { "" };
-        writeln!(out, "{name}: errors with seeds {}{more}", seeds.join(" "))?;
+    for (protocol, report) in reports.iter().filter(|(_, report)| !report.wrong.is_empty()) {
+        let seeds: Vec<String> = report.wrong.iter().take(MAX_PRINTED).map(u32::to_string).collect();
+        let more = if report.wrong.len() > seeds.len() { " …" } else { "" };
+        writeln!(out, "{}: errors with seeds {}{more}", protocol_name(*protocol), seeds.join(" "))?;
     }
     Ok(())
 }

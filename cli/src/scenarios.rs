@@ -12,6 +12,9 @@ use stepscope_core::scenario::presets::{self, Preset};
 use stepscope_core::scenario::{MAX_TEXT_BYTES, Problems, Scenario, link};
 use stepscope_core::sim::Experiment;
 
+/// The name in messages if no scenario is given.
+pub(crate) const DEFAULT: &str = "the default scenario";
+
 /// Checks types only; `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Scenario, Failure> {
     match Scenario::from_json_lenient(&scenario_text(path)?) {

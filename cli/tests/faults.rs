@@ -34,6 +34,23 @@ fn only_raw_lines_have_wrong_steps_with_any_number_of_threads() {
 }
 
 #[test]
+fn json_has_every_seed_with_errors() {
+    let (code, out, _) = stepscope(&["faults", "--seeds", "300", "--protocol", "raw", "--json"]);
+    assert_eq!(code, Some(0));
+    let report: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+    let rows = |table: &str| report["tables"][table].as_array().cloned().expect("a table");
+    let counts = rows("counts");
+    let count = counts.iter().find(|row| row["count"] == "seeds_with_errors").expect("a count");
+    let seeds: Vec<u64> = rows("wrong_seeds").iter().filter_map(|row| row["seed"].as_u64()).collect();
+    // More than the text names.
+    assert!(seeds.len() > 8 && Some(seeds.len() as u64) == count["value"].as_u64(), "{count}: {seeds:?}");
+    assert!(
+        seeds.is_sorted_by(|seed, next| seed < next) && seeds.iter().all(|seed| *seed < 300),
+        "{seeds:?}"
+    );
+}
+
+#[test]
 fn results_of_seed_ranges_add_up() {
     let frames = |options: &[&str]| {
         let all = [&["faults", "--protocol", "framed"], options].concat();
