@@ -56,9 +56,7 @@ impl Move {
             | Self::Retarget(_) => None,
         }
     }
-}
 
-impl Move {
     /// The unit of its distance, amplitude or positions, as in JSON; `None` for a dwell or a new target.
     pub const fn unit(&self) -> Option<&'static str> {
         Some(match self {
@@ -182,10 +180,13 @@ parameters! { (Clone, Debug, PartialEq)
         pub at_s: f64 = 0.1,
         pub target: Target = Target::Stop(Stop {}),
         pub profile: LimitedProfile = LimitedProfile::JerkLimited,
-        /// `None` is the axis' limit; the same for those below.
+        /// `None` is the axis' limit.
         pub max_speed: Option<Speed> = None,
+        /// `None` is the axis' limit.
         pub max_acceleration: Option<Acceleration> = None,
+        /// `None` is the axis' limit, or without one the acceleration of this move.
         pub max_deceleration: Option<Acceleration> = None,
+        /// `None` is the axis' limit.
         pub max_jerk: Option<Jerk> = None,
     }
 

@@ -3,15 +3,16 @@
 use crate::{bisection::border, format::grouped};
 use alloc::{format, string::String, vec::Vec};
 
-/// The curve of one move. Times are in s from its start, positions in steps, left negative: 0 before the start, after the
-/// end [`Curve::steps`].
+/// The curve of one move. Times are in s from its start, positions in steps, left negative. Before its start and after its
+/// end the position is that of the start and of the end: 0 and [`Curve::steps`], or up to half a step from them if a move
+/// begins or ends between two steps.
 pub trait Curve {
     fn duration_s(&self) -> f64;
 
     /// Position at the end, in whole steps.
     fn steps(&self) -> i64;
 
-    /// Position at `t`, exactly [`Curve::steps`] at the end. Rounded half up it is the number of steps due by `t`.
+    /// Position at `t`. Rounded half up it is the number of steps due by `t`.
     fn position(&self, t: f64) -> f64;
 
     /// Speed at `t` in steps/s: at the start the first of the move, at the end the last.
@@ -26,7 +27,7 @@ pub trait Curve {
     fn peaks(&self) -> Peaks;
 
     /// Rising times in s at which the formula changes: between them position, speed and acceleration are smooth and
-    /// monotonic. An oscillation has only those of its first period.
+    /// monotonic. The end of the move may be the last one. An oscillation has only those of its first period.
     fn breakpoints_s(&self) -> Vec<f64> {
         Vec::new()
     }
@@ -84,6 +85,11 @@ impl Peaks {
 
 pub(crate) fn signed(steps: i64, magnitude: f64) -> f64 {
     if steps < 0 { -magnitude } else { magnitude }
+}
+
+/// Position at which step `index` (from 0) between two whole positions is due.
+pub(crate) fn due_position(from: i64, to: i64, index: f64) -> f64 {
+    from as f64 + if to > from { index + 0.5 } else { -0.5 - index }
 }
 
 /// The greater of two numbers by one comparison, because the bits of `libm`'s maximum differ for NaN and -0.

@@ -10,8 +10,8 @@
 //! Near ties are decided by the same formula in f64, so ticks and segments agree.
 
 use crate::bisection::{Bracket, border};
-use crate::curves::curve::greater;
-use crate::curves::phases::{Phases, State};
+use crate::curves::curve::{due_position, greater};
+use crate::curves::phases::{Phases, RelativeState, State};
 use crate::timing::{
     CycleTime, F106, Interpolated, IsDueBefore, MAX_ERROR, ROUNDING, Run, Runs, Schedule, due_near,
 };
@@ -30,9 +30,8 @@ pub trait Shape {
     /// Times in s at which the formula changes, rising; the last one is the end.
     fn changes_s(&self) -> Vec<f64>;
 
-    /// The state at `t` by the formula that holds at `within_s`: a position of reference, and the state with the travel
-    /// from there as its position.
-    fn state(&self, t: f64, within_s: f64) -> (f64, State);
+    /// The state at `t` by the formula that holds at `within_s`.
+    fn state(&self, t: f64, within_s: f64) -> RelativeState;
 
     /// The exact position at the end.
     fn end_position(&self) -> f64;
@@ -56,7 +55,7 @@ impl Shape for Phases {
         self.ends_s().collect()
     }
 
-    fn state(&self, t: f64, within_s: f64) -> (f64, State) {
+    fn state(&self, t: f64, within_s: f64) -> RelativeState {
         self.state_by(t, within_s)
     }
 
@@ -100,7 +99,7 @@ impl Interval {
 
     /// The half-integer at which step `index` (from 0) of the interval is due.
     fn due_position(&self, index: f64) -> f64 {
-        self.from as f64 + if self.is_rising() { index + 0.5 } else { -0.5 - index }
+        due_position(self.from, self.to, index)
     }
 }
 
@@ -136,7 +135,7 @@ impl<S: Shape> Numeric<S> {
         self.view().step_count()
     }
 
-    /// Maximum distance from the start in steps.
+    /// Upper bound on the distance from the start in steps: whole positions are at most half a step from the curve.
     pub(crate) fn max_distance(&self) -> f64 {
         let max = self.intervals.iter().map(|interval| interval.to.unsigned_abs()).max();
         max.unwrap_or(0) as f64 + 1.0
@@ -187,8 +186,11 @@ fn intervals_of(shape: &dyn Shape) -> Vec<Interval> {
     let changes_s = shape.changes_s();
     let end_s = changes_s.last().copied().unwrap_or(0.0);
     let mut push = |to_s: f64, within_s: f64| {
-        let (origin, state) = shape.state(to_s, within_s);
-        let position = if to_s >= end_s { shape.end_position() } else { origin + state.position };
+        let position = if to_s >= end_s {
+            shape.end_position()
+        } else {
+            shape.state(to_s, within_s).absolute().position
+        };
         let to = round_half_up(position);
         count = count.saturating_add(from.abs_diff(to));
         intervals.push(Interval { from_s, to_s, from, to, count });
@@ -219,8 +221,7 @@ impl<'p> View<'p> {
     }
 
     fn state(self, t: f64, within_s: f64) -> State {
-        let (origin, state) = self.shape.state(t, within_s);
-        State { position: origin + state.position, ..state }
+        self.shape.state(t, within_s).absolute()
     }
 
     fn state_in(self, interval: &Interval, t: f64) -> State {
@@ -239,7 +240,7 @@ impl<'p> View<'p> {
     /// Steps that remain at `t` until `position` in the direction of the interval, above 0 before it, and the speed in that
     /// direction.
     fn missing(self, interval: &Interval, position: f64, t: f64) -> (f64, f64) {
-        let (origin, state) = self.shape.state(t, interval.middle_s());
+        let RelativeState { origin, state } = self.shape.state(t, interval.middle_s());
         let missing = (position - origin) - state.position;
         if interval.is_rising() { (missing, state.speed) } else { (-missing, -state.speed) }
     }
@@ -297,8 +298,11 @@ impl<'p> View<'p> {
         let at = self.intervals.partition_point(|interval| interval.count <= earlier);
         let Some(interval) = self.intervals.get(at) else { return false };
         let t = since.high / f64::from(clock_hz);
-        if t <= interval.from_s || t > interval.to_s {
-            return t > interval.to_s;
+        if t <= interval.from_s {
+            return false;
+        }
+        if t > interval.to_s {
+            return true;
         }
         let index = earlier - (interval.count - interval.steps());
         let (missing, _) = self.missing(interval, interval.due_position(index as f64), t);
@@ -352,7 +356,7 @@ fn turns_s(shape: &dyn Shape, from_s: f64, to_s: f64) -> Vec<f64> {
     let within_s = from_s + (to_s - from_s) / 2.0;
     let margin_s = (to_s - from_s) * INSIDE;
     let (first_s, last_s) = (from_s + margin_s, to_s - margin_s);
-    let at = |t: f64| shape.state(t, within_s).1;
+    let at = |t: f64| shape.state(t, within_s).state;
     // Where two numbers have opposite signs, the border between them.
     let change = |from_s: f64, to_s: f64, of: fn(State) -> f64| {
         let (first, last) = (of(at(from_s)), of(at(to_s)));

@@ -34,7 +34,7 @@ impl Oscillation {
         CycleTime::exact(&duration.times(clock_hz.into()))
     }
 
-    pub(crate) fn period(&self, clock_hz: u32) -> F106 {
+    pub(crate) fn period_cycles(&self, clock_hz: u32) -> F106 {
         Exact::of(self.period_s).times(clock_hz.into()).double()
     }
 
@@ -49,7 +49,8 @@ impl Oscillation {
         let returns = half % 2 == 1;
         let from_extreme = if returns { per_half as f64 - from_start } else { from_start };
         let due = round_half_up(from_extreme).unsigned_abs().min(per_half);
-        let distance = if returns { per_half - due } else { due } as i64;
+        let distance = if returns { per_half - due } else { due };
+        let distance = distance as i64;
         (if self.starts_right { -distance } else { distance }, half * per_half + due)
     }
 

@@ -6,6 +6,7 @@
 //!              +------------/-
 //! ```
 
+use crate::curves::curve::greater;
 use alloc::vec::Vec;
 
 /// Position in steps, speed in steps/s and acceleration in steps/s^2 at one instant.
@@ -14,6 +15,19 @@ pub struct State {
     pub position: f64,
     pub speed: f64,
     pub acceleration: f64,
+}
+
+/// A state whose position counts from `origin`, so that no digits cancel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RelativeState {
+    pub origin: f64,
+    pub state: State,
+}
+
+impl RelativeState {
+    pub(crate) fn absolute(self) -> State {
+        State { position: self.origin + self.state.position, ..self.state }
+    }
 }
 
 impl State {
@@ -190,25 +204,24 @@ impl Phases {
         if time_s > self.duration_s {
             return State { acceleration: 0.0, ..self.end }.after(time_s - self.duration_s, 0.0);
         }
-        let (origin, state) = self.state_by(time_s, time_s);
-        State { position: origin + state.position, ..state }
+        self.state_by(time_s, time_s).absolute()
     }
 
-    /// The state at `time_s` by the formula of the phase before `within_s`: a position of reference, and the state with the
-    /// travel from there as its position.
-    pub(crate) fn state_by(&self, time_s: f64, within_s: f64) -> (f64, State) {
+    /// The state at `time_s` by the formula of the phase before `within_s`.
+    pub(crate) fn state_by(&self, time_s: f64, within_s: f64) -> RelativeState {
         let after = self.placed.partition_point(|placed| placed.start_s < within_s);
         match self.placed.get(after.saturating_sub(1)) {
             Some(PlacedPhase { reference_s, reference, jerk, .. }) => {
                 let from_reference = State { position: 0.0, ..*reference };
-                (reference.position, from_reference.after(time_s - reference_s, *jerk))
+                let state = from_reference.after(time_s - reference_s, *jerk);
+                RelativeState { origin: reference.position, state }
             }
-            None => (self.end.position, State { position: 0.0, ..self.end }),
+            None => RelativeState { origin: self.end.position, state: State { position: 0.0, ..self.end } },
         }
     }
 
     /// Maximum magnitude of the jerk.
     pub(crate) fn peak_jerk(&self) -> f64 {
-        self.placed.iter().fold(0.0, |max, placed| libm::fmax(max, libm::fabs(placed.jerk)))
+        self.placed.iter().fold(0.0, |max, placed| greater(max, libm::fabs(placed.jerk)))
     }
 }

@@ -14,7 +14,7 @@ mod max_error;
 mod passed;
 
 use crate::curves::cubic::{Crossing, Cubic, slope_between};
-use crate::curves::curve::greater;
+use crate::curves::curve::{due_position, greater};
 use crate::timing::{CycleTime, Exact, F106, Interpolated, IsDueBefore, MAX_ERROR, Run, Runs, Schedule};
 use crate::{Curve, Peaks, format::grouped, moves::Interpolation, round_half_up};
 use alloc::{boxed::Box, format, string::String, vec::Vec};
@@ -181,11 +181,6 @@ impl Schedule for Points {
     }
 }
 
-/// Position at which step `index` (from 0) between two whole positions is due.
-fn due_position(from: i64, to: i64, index: f64) -> f64 {
-    from as f64 + if to > from { index + 0.5 } else { -0.5 - index }
-}
-
 fn end_positions(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
     // Whether the curve goes left after the end of each piece, immediately or after a standstill.
     let mut goes_left = false;
@@ -210,6 +205,7 @@ fn end_positions(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
 }
 
 fn set_smooth_slopes(pieces: &mut [Cubic]) {
+    // Each piece is still straight.
     let mean: Vec<(f64, f64)> =
         pieces.iter().map(|piece| (piece.to_s - piece.from_s, piece.to_speed)).collect();
     let inner = mean.windows(2).map(|pair| match pair {

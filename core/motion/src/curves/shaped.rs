@@ -6,7 +6,7 @@
 
 use crate::curves::move_curve::MoveCurve;
 use crate::curves::numeric::Shape;
-use crate::curves::phases::State;
+use crate::curves::phases::{RelativeState, State};
 use crate::shaper::Impulse;
 use alloc::vec::Vec;
 
@@ -105,7 +105,7 @@ impl<P: MoveCurve> Shape for Shaped<P> {
         all
     }
 
-    fn state(&self, t: f64, within_s: f64) -> (f64, State) {
+    fn state(&self, t: f64, within_s: f64) -> RelativeState {
         let sum = self.impulses.iter().fold(State::default(), |sum, Impulse { amplitude, time_s }| {
             let State { position, speed, acceleration } = self.unshaped(t - time_s, within_s - time_s);
             State {
@@ -114,6 +114,6 @@ impl<P: MoveCurve> Shape for Shaped<P> {
                 acceleration: sum.acceleration + amplitude * acceleration,
             }
         });
-        (0.0, sum)
+        RelativeState { origin: 0.0, state: sum }
     }
 }

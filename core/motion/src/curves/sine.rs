@@ -74,7 +74,7 @@ impl Schedule for Sine {
 
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
         let travel = 2 * self.oscillation.amplitude;
-        let period = self.oscillation.period(clock_hz);
+        let period = self.oscillation.period_cycles(clock_hz);
         let half = period * 0.5;
         Box::new(move |k, since| {
             let since = since - half * F106::from((k - 1) / travel);

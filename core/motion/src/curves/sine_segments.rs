@@ -179,7 +179,7 @@ impl Schedule for SineSegments {
 
     /// The time of a step is a fraction of the period. In f64 its error is at most 6 u.
     fn is_due_before(&self, clock_hz: u32) -> IsDueBefore<'_> {
-        let period = self.oscillation.period(clock_hz);
+        let period = self.oscillation.period_cycles(clock_hz);
         let steps_per_period = 4 * self.oscillation.amplitude;
         // Each segment of a period with the number of steps up to its end.
         let (mut segments, mut count) = (Vec::with_capacity(4 * self.segments.len()), 0);

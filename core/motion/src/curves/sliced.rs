@@ -140,8 +140,14 @@ impl Sliced {
         &self.slices.starts_s
     }
 
+    /// Index of the slice in which the curve passes `position`, in steps without sign. At the end it is no slice's.
     fn slice_index(&self, position: f64) -> usize {
         self.slices.sums.partition_point(|sum| f64::from(*sum) <= position).saturating_sub(1)
+    }
+
+    fn last_index_with_steps(&self) -> usize {
+        let sums = &self.slices.sums;
+        sums.partition_point(|sum| Some(sum) < sums.last()).saturating_sub(1)
     }
 
     fn slice(&self, index: usize) -> Option<Slice> {
@@ -208,9 +214,10 @@ impl Curve for Sliced {
         if t >= self.duration_s() {
             return self.steps() as f64;
         }
-        let Some(Slice { from_s, to_s, steps_before, steps }) = self.slice_at(t).filter(|_| t > 0.0) else {
+        if t <= 0.0 {
             return 0.0;
-        };
+        }
+        let Some(Slice { from_s, to_s, steps_before, steps }) = self.slice_at(t) else { return 0.0 };
         let part = (t - from_s) / (to_s - from_s);
         signed(self.steps(), f64::from(steps_before) + f64::from(steps) * part)
     }
@@ -230,7 +237,8 @@ impl Curve for Sliced {
     }
 
     fn time_s(&self, position: f64) -> f64 {
-        let slice = self.slice(self.slice_index(position)).unwrap_or_default();
+        let index = self.slice_index(position).min(self.last_index_with_steps());
+        let slice = self.slice(index).unwrap_or_default();
         let steps = position - f64::from(slice.steps_before);
         slice.from_s + steps * (slice.to_s - slice.from_s) / f64::from(slice.steps.max(1))
     }
@@ -238,14 +246,15 @@ impl Curve for Sliced {
     fn detail(&self, limit_steps_s: f64) -> String {
         let error = self.time_error();
         let (slices, peak) = (self.slice_count(), self.peaks().speed);
+        // Not a negation, which would print -0.
+        let (early_ms, early_percent) = (0.0 - 1e3 * error.end_s, 0.0 - 100.0 * error.relative);
         format!(
-            "peak {} steps/s, {} slices of a curve of {} steps; ends {:.3} ms early, time error {:.2} % (exact: 0), \
+            "peak {} steps/s, {} slices of a curve of {} steps; ends {early_ms:.3} ms early, time error \
+             {early_percent:.2} % (exact: 0), \
              the last step {:.3} ms {}{}",
             grouped(peak),
             grouped(slices as f64),
             grouped(self.compensated_steps as f64),
-            0.0 - 1e3 * error.end_s,
-            0.0 - 100.0 * error.relative,
             1e3 * libm::fabs(error.last_step_s),
             if error.last_step_s > 0.0 { "late" } else { "early" },
             ramp_up_to(self.exact.longest_ramp_s(limit_steps_s), self.exact.duration_s())

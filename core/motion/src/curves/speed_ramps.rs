@@ -9,7 +9,7 @@
 //! ```
 
 use crate::curves::numeric::Shape;
-use crate::curves::phases::State;
+use crate::curves::phases::{RelativeState, State};
 use crate::curves::ramp::Ramp;
 use crate::format::ramp_up_to;
 use crate::timing::Number;
@@ -101,7 +101,7 @@ impl Shape for SpeedRamps {
         changes_s
     }
 
-    fn state(&self, t: f64, within_s: f64) -> (f64, State) {
+    fn state(&self, t: f64, within_s: f64) -> RelativeState {
         let sign = if self.to < self.from { -1.0 } else { 1.0 };
         let vp = self.plateau_speed();
         let ramp = |speed: f64, t: f64| {
@@ -113,14 +113,15 @@ impl Shape for SpeedRamps {
             }
         };
         if within_s < self.ramp_s {
-            (self.from, ramp(self.start_speed, t))
+            RelativeState { origin: self.from, state: ramp(self.start_speed, t) }
         } else if within_s > self.duration_s - self.ramp_s {
             let mirrored = ramp(self.end_speed, self.duration_s - t);
             let (position, acceleration) = (-mirrored.position, -mirrored.acceleration);
-            (self.to, State { position, acceleration, ..mirrored })
+            RelativeState { origin: self.to, state: State { position, acceleration, ..mirrored } }
         } else {
             let position = sign * (self.start_speed * self.lost_s() + vp * (t - self.lost_s()));
-            (self.from, State { position, speed: sign * vp, acceleration: 0.0 })
+            let state = State { position, speed: sign * vp, acceleration: 0.0 };
+            RelativeState { origin: self.from, state }
         }
     }
 

@@ -3,7 +3,7 @@
 
 mod motor;
 
-use crate::curves::{numeric::Numeric, shaped::Part, shaped::Shaped, shaped::TooManyChanges};
+use crate::curves::{curve::signed, numeric::Numeric, shaped::Part, shaped::Shaped, shaped::TooManyChanges};
 use crate::groups::Group;
 use crate::moves::{Axis, Move};
 use crate::planners::budget::{Budget, MAX_SHAPED_CHANGES};
@@ -167,7 +167,7 @@ fn push(
             });
             profile.map(|profile| {
                 let end_speed = given_end_speed(given, here);
-                let end_speed = if profile.steps() < 0 { -end_speed } else { end_speed };
+                let end_speed = signed(profile.steps(), end_speed);
                 (profile, end_speed)
             })
         }

@@ -1,5 +1,6 @@
 //! Where a move begins: its position between two steps, and the speed that it takes over.
 
+use crate::curves::curve::signed;
 use crate::mechanics::Speed;
 use crate::planners::quantities::Quantities;
 use crate::problem::Cause;
@@ -45,7 +46,7 @@ impl EdgeSpeeds {
 impl Start {
     /// The speed that a move of `steps` takes over, along the move; `None` with a problem if it points the other way.
     pub(crate) fn taken_over(self, quantities: &mut Quantities<'_>, steps: i64) -> Option<f64> {
-        let along = if steps < 0 { -self.speed } else { self.speed };
+        let along = signed(steps, self.speed);
         if along < 0.0 {
             quantities.refuse("start_speed", Cause::SpeedAgainstMove { speed: self.speed, steps });
             return None;

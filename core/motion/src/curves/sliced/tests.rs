@@ -3,6 +3,7 @@
 use super::*;
 use crate::{
     MAX_SPEED,
+    bisection::border,
     mechanics::Distance,
     moves::{self, Axis, CosineMethod, Move},
     plan_axis,
@@ -41,6 +42,22 @@ fn has_the_time_errors_of_the_paper_except_for_one_row() {
         // Within one slice of the paper's, except for its second row.
         let far = (error - document).abs() / 100.0 * time > 0.001 + 1e-9;
         assert_eq!(far, (plateau, steps) == (0.2, 6400), "{error} {document}");
+    }
+}
+
+#[test]
+fn the_end_position_has_the_time_at_which_the_curve_arrives() {
+    // The last slices of a tail have no steps, so the curve arrives before its end.
+    for (steps, duration_s, ramp_s) in
+        [(3200_i32, 0.4, 0.1), (-3200, 0.4, 0.1), (3200, 0.4, 0.2), (6400, 0.4, 0.2)]
+    {
+        let curve = sliced(steps.into(), duration_s, ramp_s);
+        let last = curve.slices().filter(|slice| slice.steps > 0).last().expect("a slice with steps");
+        let end_s = curve.time_s(f64::from(steps).abs());
+        assert!((end_s - last.to_s).abs() < 1e-12, "{steps} in {duration_s} s: {end_s}, {}", last.to_s);
+        let bisected_s =
+            border(0.0, curve.duration_s(), |t| curve.position(t).abs() < f64::from(steps).abs()).1;
+        assert!((end_s - bisected_s).abs() < 1e-9, "{steps} in {duration_s} s: {end_s}, {bisected_s}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Plans a constant rate and a dwell (DESIGN B6).
 
 use crate::curves::constant_velocity::{ConstantVelocity, Dwell};
-use crate::curves::{numeric::Numeric, phases::Phase, phases::Phases};
+use crate::curves::{curve::signed, numeric::Numeric, phases::Phase, phases::Phases};
 use crate::planners::start::{Planned, Start};
 use crate::{limits, moves, planners::quantities::Quantities};
 
@@ -18,7 +18,7 @@ pub(super) fn constant(
         return Some(Planned::FromRest(ConstantVelocity::from_exact(steps, speed)));
     }
     let travel = steps as f64 - start.offset;
-    let signed_speed = if steps < 0 { -speed } else { speed };
+    let signed_speed = signed(steps, speed);
     let cruise = Phase::cruise(travel / signed_speed);
     let phases = Phases::new(start.offset, signed_speed, [cruise]).ending_at(steps as f64, signed_speed);
     Some(Planned::General(Numeric::of_phases(phases, start.offset)))
