@@ -26,7 +26,8 @@ pub(crate) use rate::{IdleLevel, detect_line};
 use core::{fmt, str::FromStr};
 use std::collections::VecDeque;
 
-/// Below this number of samples per bit, the rounding of the start edge matters.
+/// Below this number of samples per bit, the rounding of the start edge matters. Times in a finer unit are treated like
+/// samples.
 pub const COARSE_BIT: f64 = 16.0;
 /// Maximum number of edges per word; more are noise.
 const MAX_EDGES: usize = 64;
@@ -127,7 +128,8 @@ impl FromStr for Format {
 /// A change of a serial line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// Time in any unit: samples, ticks or cycles.
+    /// Time in samples, or in a finer unit such as ticks or cycles. The deviation that is tolerated at a start edge is a
+    /// number of these, so a finer unit tolerates less.
     pub at: u64,
     /// Level after the edge.
     pub high: bool,
@@ -214,7 +216,8 @@ fn fit_words(
     }
 }
 
-fn rounded(number: f64) -> i64 {
+/// Rounded half up; 0 for negative numbers.
+fn rounded_from_zero(number: f64) -> i64 {
     (number + 0.5).max(0.0) as i64
 }
 
@@ -227,8 +230,8 @@ fn fit(times: &[f64], bit: f64, format: Format) -> FittedWord {
     let max_deviation = MAX_START_DEVIATION.min(0.4 * bit);
     let mut deviation = DEVIATION_STEP;
     while deviation <= max_deviation {
-        for start in [deviation, -deviation] {
-            let (fitted, cost) = fit_from(times, bit, format, start);
+        for signed in [deviation, -deviation] {
+            let (fitted, cost) = fit_from(times, bit, format, signed);
             if cost < min_cost {
                 (best, min_cost) = (fitted, cost);
             }
@@ -238,19 +241,19 @@ fn fit(times: &[f64], bit: f64, format: Format) -> FittedWord {
     best
 }
 
-/// Fits the edges to whole bits from `start`; returns the fit and its cost.
-fn fit_from(times: &[f64], bit: f64, format: Format, start: f64) -> (FittedWord, f64) {
+/// Fits the edges to whole bits from a start edge that deviates; returns the fit and its cost.
+fn fit_from(times: &[f64], bit: f64, format: Format, deviation: f64) -> (FittedWord, f64) {
     let bits = i64::from(format.bits());
     let mut fitted = FittedWord { edges: 1, ..FittedWord::default() };
     let (mut levels, mut last) = (0_u16, 0_i64);
-    let mut cost = (start / bit) * (start / bit);
+    let mut cost = (deviation / bit) * (deviation / bit);
     let (mut n, mut sum_x, mut sum_y, mut sum_xx, mut sum_xy) = (1.0, 0.0, 0.0, 0.0, 0.0);
     for at in times.iter().skip(1) {
-        let whole = rounded((at - start) / bit);
+        let whole = rounded_from_zero((at - deviation) / bit);
         if whole >= bits {
             break;
         }
-        let distance = (at - start) / bit - whole as f64;
+        let distance = (at - deviation) / bit - whole as f64;
         (cost, fitted.squares) = (cost + distance * distance, fitted.squares + distance * distance);
         if whole == last {
             fitted.coincident += 1;

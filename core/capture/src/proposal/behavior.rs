@@ -7,6 +7,8 @@ use crate::uart::{self, Edge, IdleLevel};
 const MAX_LINE_EDGES: usize = 600;
 /// Minimum number of pulses of STEP.
 pub(super) const MIN_STEPS: u64 = 4;
+/// Minimum number of pulses whose widths are compared.
+const MIN_UNIFORM_PULSES: u64 = 8;
 
 /// Measurements of a channel. Times are in ticks, between its first and last edge.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,7 +60,7 @@ impl Behavior {
     pub(super) fn has_uniform_pulses(&self) -> bool {
         !self.starts_high
             && !self.ends_high
-            && self.rises >= 2 * MIN_STEPS
+            && self.rises >= MIN_UNIFORM_PULSES
             && self.shortest_high.is_none_or(|shortest| self.longest_high <= shortest.saturating_mul(2))
     }
 }

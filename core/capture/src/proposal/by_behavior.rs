@@ -54,6 +54,7 @@ impl Draft<'_> {
         if self.motors.iter().any(|motor| matches!(motor.source, Source::Step(_) | Source::CwCcw(..))) {
             return;
         }
+        // A pulse has two edges.
         let has_enough_edges = |channel: &usize| self.behavior(*channel).changes() >= 2 * MIN_STEPS;
         let channels: Vec<usize> =
             self.unassigned_without_lines().into_iter().filter(has_enough_edges).collect();

@@ -35,5 +35,6 @@ pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
 /// Bits of the signals in exports: STEP and DIR of each channel, then EN, RX, TX, DE.
 pub fn shown_signals(channels: u8) -> impl Iterator<Item = u32> {
     let channels = 0..u32::from(channels);
-    channels.flat_map(|channel| [channel, 16 + channel]).chain(32..36)
+    let others = [Levels::EN, Levels::RX, Levels::TX, Levels::DE].map(u64::trailing_zeros);
+    channels.flat_map(|channel| [channel, Levels::DIR_SHIFT + channel]).chain(others)
 }

@@ -39,7 +39,7 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// An armed receiver with this bit time.
+    /// An armed receiver with this bit time, at least 2 cycles: half of it is the time up to the sample of a start bit.
     pub const fn new(bit_cycles: Cycles) -> Self {
         Self { bit_cycles, state: State::Armed, start: Instant::RESET }
     }
