@@ -57,7 +57,7 @@ impl Scenario {
         self.check_version(&mut validator);
         check_ranges(self, &mut validator);
         let first = self.check_first_controller(&mut validator);
-        let additional = self.check_additional_controllers(first.as_ref(), &mut validator);
+        let additional_configs = self.check_additional_controllers(first.as_ref(), &mut validator);
         self.check_host_rate(&mut validator);
         let forced = self.check_glitches(&mut validator);
         let (mut segments, mut stand_alone) = (None, None);
@@ -76,7 +76,7 @@ impl Scenario {
             }
         }
         self.check_analysis_axis(&mut validator);
-        let configs: Vec<Config> = first.into_iter().chain(additional).collect();
+        let configs: Vec<Config> = first.into_iter().chain(additional_configs).collect();
         let plants = self.check_plants(&configs, &mut validator);
         validator.end(()).map(|()| CheckedScenario {
             configs,
@@ -110,7 +110,9 @@ impl Scenario {
         let has_no_line = self.source.sends_nothing();
         let configure = if has_no_line { Config::of_segments } else { Config::new };
         let config = configure(self.clock_hz, &self.bus, &self.line.serial());
-        let config = config.map_err(|problems| add_unless_out_of_range(problems, validator)).ok();
+        let is_range = |error: &ConfigError| matches!(error, ConfigError::Range { .. });
+        let config =
+            config.map_err(|problems| add_new(problems, ToString::to_string, is_range, validator)).ok();
         // By default the receiver has the host's rate, which is checked above.
         if self.line.receiver_baud.is_some() && !has_no_line {
             validator.whole("line.baud", self.line.baud, 1..=self.clock_hz.max(1).into(), "baud");
@@ -212,7 +214,7 @@ impl Scenario {
             Field::Bus(_) => format!("controllers[{index}].{field}"),
         };
         Config::new(self.clock_hz, &controller.bus, &line)
-            .map_err(|problems| add_new(problems, path_of, validator))
+            .map_err(|problems| add_new(problems, path_of, |_| true, validator))
             .ok()
     }
 
@@ -240,14 +242,14 @@ impl Scenario {
             let host = SerialLine { receiver_baud: None, ..self.line.serial() };
             let problems = Config::new(self.clock_hz, &Bus::default(), &host).err().unwrap_or_default();
             let is_rate = |problem: &ConfigProblem| problem.field == Field::Line("baud");
-            add_new(problems.into_iter().filter(is_rate), ToString::to_string, validator);
+            add_new(problems.into_iter().filter(is_rate), ToString::to_string, |_| true, validator);
         }
     }
 
     fn check_packets(&self, packets: &Packets, validator: &mut Validator) {
         let is_addressed = self.line.protocol == Protocol::Raw && self.line.address.is_some();
-        let additional = self.controllers.iter().map(|controller| &controller.packets);
-        let all = additional.chain([&packets.packets]).flatten();
+        let additional_packets = self.controllers.iter().map(|controller| &controller.packets);
+        let all = additional_packets.chain([&packets.packets]).flatten();
         let bytes: usize = all.map(|Hex(bytes)| bytes.len()).sum();
         validator.at("source.packets.packets", |list| {
             self.channels().check_packets(&packets.packets, is_addressed, list);
@@ -279,25 +281,17 @@ impl Scenario {
     }
 }
 
-/// Adds the problems of the first controller without the ranges that `check_ranges` has reported.
-fn add_unless_out_of_range(problems: Vec<ConfigProblem>, validator: &mut Validator) {
-    for ConfigProblem { field, error } in problems {
-        let path = field.to_string();
-        if !(matches!(error, ConfigError::Range { .. }) && validator.has_problem(&path)) {
-            validator.add(&path, error);
-        }
-    }
-}
-
-/// Adds the problems that another configuration does not have as well.
+/// Adds problems, without those of the kind `is_repeated` at paths that already have one: another configuration or
+/// `check_ranges` has reported them.
 fn add_new(
     problems: impl IntoIterator<Item = ConfigProblem>,
     path_of: impl Fn(&Field) -> String,
+    is_repeated: impl Fn(&ConfigError) -> bool,
     validator: &mut Validator,
 ) {
     for ConfigProblem { field, error } in problems {
         let path = path_of(&field);
-        if !validator.has_problem(&path) {
+        if !(is_repeated(&error) && validator.has_problem(&path)) {
             validator.add(&path, error);
         }
     }

@@ -21,13 +21,20 @@ pub struct Plants {
     pub tail: Cycles,
 }
 
-/// The motor of a channel, with the paths of its fields and its mechanics. `None` is the default motor.
+/// The motor of a channel, with the paths of its fields and its mechanics.
 struct MotorAtPath<'a> {
+    /// `None` is the default motor.
     motor: Option<&'a Motor>,
     full_step_deg: f64,
     microsteps: u16,
     path: String,
     mechanics_path: String,
+}
+
+impl MotorAtPath<'_> {
+    fn supply_v(&self) -> f64 {
+        self.motor.map_or_else(|| Motor::default().supply_v, |motor| motor.supply_v)
+    }
 }
 
 impl Scenario {
@@ -38,16 +45,16 @@ impl Scenario {
         if !validator.is_ok() {
             return None;
         }
-        let setups = configs.iter().enumerate().map(|(index, config)| {
+        let mut setups = Vec::with_capacity(configs.len());
+        for (index, config) in configs.iter().enumerate() {
             let motors = self.motors(settings, index, config.channels());
             check_one_supply(&motors, validator);
             let setup = setup(self.clock_hz, settings, &motors);
             for refused in Plant::new(&setup).err().unwrap_or_default() {
                 add_refusal(refused, &motors, validator);
             }
-            setup
-        });
-        let setups = setups.collect();
+            setups.push(setup);
+        }
         let tail = Cycles((settings.tail_s * f64::from(self.clock_hz) + 0.5) as u64);
         if settings.self_test {
             self.check_self_test(configs, validator);
@@ -57,12 +64,13 @@ impl Scenario {
 
     /// A self-test steps each motor there and back (F7).
     fn check_self_test(&self, configs: &[Config], validator: &mut Validator) {
+        if self.source.sends_nothing() {
+            let detail =
+                "segments and stand-alone controllers have no self-test; choose ticks, or set it to false";
+            validator.add("plant.self_test", ValueError::Conflict { detail });
+            return;
+        }
         for (index, config) in configs.iter().enumerate() {
-            if self.source.sends_nothing() {
-                let detail = "segments and stand-alone controllers have no self-test; choose ticks, or set it to false";
-                validator.add("plant.self_test", ValueError::Conflict { detail });
-                return;
-            }
             let needed = min_boot_time(config).0;
             if config.boot().0 < needed {
                 let path = match index {
@@ -86,6 +94,7 @@ impl Scenario {
         for (index, entry) in self.plant.iter().flat_map(|plant| &plant.motors).enumerate().take(MAX_CHANNELS)
         {
             let path = format!("plant.motors[{index}]");
+            // A plan checks the motor of its axis; the moves are the default and have no problems.
             let axis = Axis { motor: Some(entry.motor.clone()), ..Axis::default() };
             validator.extend(plan_axis(&axis, &path).err().into_iter().flatten());
             validator.at(&format!("{path}.motor"), |here| check_motor(&entry.motor, here));
@@ -110,8 +119,8 @@ impl Scenario {
             .map(|channel| {
                 let axis = axes.get(channel);
                 let path = format!("{axes_path}[{channel}]");
-                let mechanics = axis.map(|axis| (axis, mechanics(&axis.mechanics)));
-                if let Some((axis, Some((name, full_step_deg, microsteps)))) = mechanics
+                let rotation = axis.map(|axis| (axis, rotation_of(&axis.mechanics)));
+                if let Some((axis, Some((name, full_step_deg, microsteps)))) = rotation
                     && (axis.motor.is_some() || settings.motors.is_empty())
                 {
                     let mechanics_path = format!("{path}.mechanics.{name}");
@@ -141,7 +150,7 @@ impl Scenario {
 }
 
 /// Name, full step and microsteps, if these mechanics have them.
-fn mechanics(mechanics: &Mechanics) -> Option<(&'static str, f64, u16)> {
+fn rotation_of(mechanics: &Mechanics) -> Option<(&'static str, f64, u16)> {
     match mechanics {
         Mechanics::Rotary(m) => Some(("rotary", m.full_step_deg, m.microsteps)),
         Mechanics::Wheel(m) => Some(("wheel", m.full_step_deg, m.microsteps)),
@@ -184,21 +193,18 @@ fn check_motor(motor: &Motor, here: &mut Validator) {
 }
 
 fn check_one_supply(motors: &[MotorAtPath<'_>], validator: &mut Validator) {
-    let supply =
-        |motor: &MotorAtPath<'_>| motor.motor.map_or(Motor::default().supply_v, |motor| motor.supply_v);
-    let Some(first) = motors.first().map(supply) else { return };
+    let Some(first) = motors.first().map(MotorAtPath::supply_v) else { return };
     for other in motors {
         let path = format!("{}.supply_v", other.path);
-        if supply(other).to_bits() != first.to_bits() && !validator.has_problem(&path) {
-            validator.add(&path, Cause::OtherSupply { supply_v: supply(other), first_v: first });
+        if other.supply_v().to_bits() != first.to_bits() && !validator.has_problem(&path) {
+            validator.add(&path, Cause::OtherSupply { supply_v: other.supply_v(), first_v: first });
         }
     }
 }
 
 fn setup(clock_hz: u32, settings: &PlantSettings, motors: &[MotorAtPath<'_>]) -> parameters::Setup {
     let default = Motor::default();
-    let supply_v =
-        motors.first().and_then(|first| first.motor).map_or(default.supply_v, |motor| motor.supply_v);
+    let supply_v = motors.first().map_or(default.supply_v, MotorAtPath::supply_v);
     let (sensor, encoder) = (&settings.current_sensor, &settings.encoder);
     parameters::Setup {
         clock_hz,
@@ -229,11 +235,11 @@ fn setup(clock_hz: u32, settings: &PlantSettings, motors: &[MotorAtPath<'_>]) ->
             threshold_a: protection.threshold_a,
             samples: protection.samples,
         }),
-        motors: motors.iter().map(|each| motor(each, each.motor.unwrap_or(&default))).collect(),
+        motors: motors.iter().map(|each| motor_model(each, each.motor.unwrap_or(&default))).collect(),
     }
 }
 
-fn motor(channel: &MotorAtPath<'_>, motor: &Motor) -> parameters::MotorModel {
+fn motor_model(channel: &MotorAtPath<'_>, motor: &Motor) -> parameters::MotorModel {
     let drive = &motor.drive;
     parameters::MotorModel {
         full_step_deg: channel.full_step_deg,

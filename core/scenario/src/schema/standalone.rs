@@ -265,7 +265,7 @@ settings! {
     pub struct ProfileGroup {
         /// One move of an axis (`source.motion`), in steps and one direction.
         pub motion: Option<Move> = None => label("Motion").null_means("use the intervals"),
-        /// Interval before each step, up to 1 000 000.
+        /// Intervals, each before its step.
         pub intervals_q16: Vec<u64> = Vec::new() => label("One interval per line").unit("1/65536 cycle")
             .range_text("at least the pulse times, at most 2^64 - 1; up to 1 000 000 lines"),
         /// Direction of the steps; used with intervals.
