@@ -16,7 +16,7 @@ use stepscope_core::{
     plant::{
         Refused,
         parameters::{MotorModel, Setup},
-        rates::{RAMP_STEPS_S2, pulls, resonance as resonance_of, search, starts},
+        rates::{RAMP_STEPS_S2, RESONANCE_S, pulls, resonance as resonance_of, search, starts},
         settling::StepResponse,
     },
     scenario::{Cause, Problem, Problems, Scenario},
@@ -102,6 +102,12 @@ struct MotorLimits<'a> {
     pull_out: Option<f64>,
 }
 
+#[derive(Clone, Copy)]
+enum LimitKind {
+    StartStop,
+    PullOut,
+}
+
 /// The distinct motors of the first controller's plant.
 fn distinct_motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleMotor>), Failure> {
     let path = &common.scenario;
@@ -126,19 +132,20 @@ fn distinct_motors(common: &Common) -> Result<(Scenario, Experiment, Vec<SingleM
     Ok((Scenario::clone(&scenario), Experiment::clone(&experiment), motors))
 }
 
-/// Runs `count` jobs on all cores; returns their results in order.
-fn in_parallel<T: Send>(
+/// Runs `job` for each input, on `--threads` threads; the results are in order.
+fn in_parallel<I: Sync, T: Send>(
     common: &Common,
     (command, unit): (&'static str, &str),
-    count: usize,
-    job: impl Fn(usize) -> Result<T, Vec<Refused>> + Sync,
+    inputs: &[I],
+    job: impl Fn(&I) -> Result<T, Vec<Refused>> + Sync,
 ) -> Result<Vec<T>, Failure> {
+    let count = inputs.len();
     let mut progress = Progress::new(command, common.work.show.progress);
-    let results =
-        parallel::each(count as u64, common.work.threads, &mut progress, |index| job(index as usize))
-            .map_err(Failure::threads)?;
+    let job_at = |index: u64| inputs.get(index as usize).map(&job);
+    let results = parallel::each(count as u64, common.work.threads, &mut progress, job_at);
+    let results = results.map_err(Failure::threads)?;
     progress.end(format_args!("{count} {unit}"), &[]);
-    results.into_iter().collect::<Result<_, _>>().map_err(|refused| {
+    results.into_iter().flatten().collect::<Result<_, _>>().map_err(|refused| {
         let problems = refused.into_iter().map(|refused| Problem::new("plant", Cause::Plant(refused)));
         let problems = Problems::new(problems.collect());
         let refused = |problems| Failure::Scenario(common.scenario.clone(), problems);
@@ -158,8 +165,7 @@ pub(crate) fn settling(arguments: &SettlingArguments) -> Result<(), Failure> {
     let slot = config.tick().0 / u64::from(config.slots());
     let t_step = arguments.t_step.map_or(slot, |cycles| cycles.get().into());
     check_step_period(&common.scenario, &motors, t_step)?;
-    let responses = in_parallel(common, ("settling", "motors"), motors.len(), |index| {
-        let motor = motors.get(index).ok_or_else(Vec::new)?;
+    let responses = in_parallel(common, ("settling", "motors"), &motors, |motor| {
         settling_of(&motor.setup, 0, t_step, share).map(|(response, _)| response)
     })?;
     if let Some(file) = &arguments.write_scenario {
@@ -199,7 +205,8 @@ fn check_step_period(path: &Path, motors: &[SingleMotor], t_step: u64) -> Result
     Ok(())
 }
 
-/// The longest settling time. Like the self-test of the device, it is the step period if a channel does not settle.
+/// The longest settling time. Like the self-test of the device, it is the time after which a channel's current first is
+/// near its current at rest, whatever follows, and the step period if a channel does not settle.
 fn settle_cycles(responses: &[StepResponse], t_step: u64) -> u32 {
     let reached: Option<Vec<u64>> = responses.iter().map(|response| response.reached).collect();
     let cycles = reached.and_then(|cycles| cycles.into_iter().max()).unwrap_or(t_step);
@@ -234,20 +241,19 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
     let ramp = arguments.ramp.get();
     let (_, _, motors) = distinct_motors(common)?;
     let turn = |setup: &Setup| setup.motors.first().map_or(1, MotorModel::steps_per_turn);
-    // The pull-out rates take longer, so they come first.
-    let rates = in_parallel(common, ("limits", "searches"), 2 * motors.len(), |index| {
-        let Some(SingleMotor { setup, .. }) = motors.get(index / 2) else { return Ok(None) };
+    let kinds = [LimitKind::StartStop, LimitKind::PullOut];
+    let jobs: Vec<(&SingleMotor, LimitKind)> =
+        motors.iter().flat_map(|motor| kinds.map(|kind| (motor, kind))).collect();
+    let rates = in_parallel(common, ("limits", "searches"), &jobs, |(SingleMotor { setup, .. }, kind)| {
         let steps = arguments.steps.map_or_else(|| turn(setup), NonZero::get);
-        if index % 2 == 0 {
-            search(|rate| pulls(setup, rate, ramp))
-        } else {
-            search(|rate| starts(setup, rate, steps))
+        match kind {
+            LimitKind::StartStop => search(|rate| starts(setup, rate, steps)),
+            LimitKind::PullOut => search(|rate| pulls(setup, rate, ramp)),
         }
     })?;
-    let rows = motors.iter().zip(rates.chunks(2)).map(|(motor, pair)| MotorLimits {
-        motor,
-        start_stop: pair.get(1).copied().flatten(),
-        pull_out: pair.first().copied().flatten(),
+    let rows = motors.iter().zip(rates.chunks(kinds.len())).filter_map(|(motor, rates)| match *rates {
+        [start_stop, pull_out] => Some(MotorLimits { motor, start_stop, pull_out }),
+        _ => None,
     });
     if common.json.json {
         let rows = rows.flat_map(|MotorLimits { motor, start_stop, pull_out }| {
@@ -274,36 +280,35 @@ pub(crate) fn limits(arguments: &LimitsArguments) -> Result<(), Failure> {
 
 const MAX_SAMPLES: u64 = 10_000_000;
 const MAX_STEPS: u64 = 10_000_000;
-/// Maximum grid steps of all motors of a map (PLANT F1), and seconds per rate.
+/// Maximum grid steps of all motors of a map (PLANT F1).
 const MAX_MOTOR_GRID_STEPS: f64 = 1e10;
-const RATE_S: f64 = 0.6;
 
 pub(crate) fn resonance(arguments: &ResonanceArguments) -> Result<(), Failure> {
     let common = &arguments.common;
     let invalid = |why: String| Failure::Invalid(common.scenario.clone(), why);
     let [from, to, step] = [arguments.from, arguments.to, arguments.step].map(Rate::get);
-    let count = (to - from) / step + 1e-9;
+    let last_index = (to - from) / step + 1e-9;
     if to < from {
         return Err(Failure::Option(format!("--to: {to} is below --from {from}; use {from} or more")));
     }
-    if count >= MAX_RATES {
+    if last_index >= MAX_RATES {
         let why = format!("--step: {step} gives more than {MAX_RATES} rates; use a larger step");
         return Err(Failure::Option(why));
     }
     let (_, _, motors) = distinct_motors(common)?;
-    let rates: Vec<f64> = (0..=count as u64).map(|index| from + index as f64 * step).collect();
-    let points = |SingleMotor { setup, .. }: &SingleMotor| {
-        RATE_S * f64::from(setup.clock_hz) / f64::from(setup.grid_cycles())
+    let rates: Vec<f64> = (0..=last_index as u64).map(|index| from + index as f64 * step).collect();
+    let grid_steps = |SingleMotor { setup, .. }: &SingleMotor| {
+        RESONANCE_S * f64::from(setup.clock_hz) / f64::from(setup.grid_cycles())
     };
-    let motor_grid_steps = rates.len() as f64 * motors.iter().map(points).sum::<f64>();
+    let motor_grid_steps = rates.len() as f64 * motors.iter().map(grid_steps).sum::<f64>();
     if motor_grid_steps > MAX_MOTOR_GRID_STEPS {
         return Err(invalid(format!(
             "the map needs {motor_grid_steps:.2e} grid steps of all motors, more than {MAX_MOTOR_GRID_STEPS:e}; use a larger --step, or one --channel"
         )));
     }
-    let points = in_parallel(common, ("resonance", "rates"), rates.len() * motors.len(), |index| {
-        let (motor, rate) = (motors.get(index / rates.len()), rates.get(index % rates.len()));
-        let (Some(SingleMotor { setup, .. }), Some(rate)) = (motor, rate) else { return Err(Vec::new()) };
+    let jobs: Vec<(&SingleMotor, f64)> =
+        motors.iter().flat_map(|motor| rates.iter().map(move |rate| (motor, *rate))).collect();
+    let points = in_parallel(common, ("resonance", "rates"), &jobs, |(SingleMotor { setup, .. }, rate)| {
         let microsteps = setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
         resonance_of(setup, rate * microsteps)
     })?;

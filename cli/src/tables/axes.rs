@@ -11,7 +11,7 @@ use stepscope_core::{
         step_tables::{EntryFormat, Form, Stored, Tolerance, stored, stored_steps},
     },
     peripheral::{config::Config, segment::PulseTimes, trace::steps},
-    scenario::{Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
+    scenario::{Motion, Problem, Scenario, Source as ScenarioSource, ValueError, of_config, of_motion},
     sim::Experiment,
 };
 
@@ -32,15 +32,23 @@ pub(super) enum Steps {
     Listed(Vec<ScheduledStep>),
 }
 
+/// What gives the steps.
+enum StepSource<'a> {
+    List(&'a Path),
+    Motion(&'a Motion),
+    Run(Vec<Vec<ScheduledStep>>),
+}
+
 impl Axes {
     pub(super) fn new(arguments: &Arguments) -> Result<Self, Failure> {
         let scenario = arguments.scenario.as_deref().map(scenarios::read).transpose()?.unwrap_or_default();
-        let path = arguments.scenario.clone().unwrap_or_else(|| PathBuf::from("the default scenario"));
+        let path = arguments.scenario.clone().unwrap_or_else(|| PathBuf::from(scenarios::DEFAULT));
         let wrong = |problems| Failure::Scenario(path.clone(), problems);
-        // Without a motion, use the steps of the scenario's run.
-        let run_steps = match (&scenario.source, &arguments.steps) {
-            (ScenarioSource::Motion(_), _) | (_, Some(_)) => None,
-            _ => Some(steps_of_run(&path, &scenario)?),
+        let source = match (&arguments.steps, &scenario.source) {
+            (Some(list), _) => StepSource::List(list),
+            (None, ScenarioSource::Motion(motion)) => StepSource::Motion(motion),
+            // Runs first: it checks the whole scenario, of which the bus is a part.
+            (None, _) => StepSource::Run(steps_of_run(&path, &scenario)?),
         };
         let clock_hz = scenario.clock_hz;
         let config = Config::of_segments(clock_hz, &scenario.bus, &scenario.line.serial());
@@ -49,20 +57,18 @@ impl Axes {
         let (interval_part, search) = (arguments.interval_part, arguments.search.unwrap_or_default());
         let tolerance =
             Tolerance { cycles, interval_part, side: arguments.window.unwrap_or_default().side() };
-        let listed = arguments.steps.as_deref().map(scenarios::text).transpose()?;
-        let (path, axes) = if let (Some(list), Some(text)) = (&arguments.steps, &listed) {
-            let steps = steps_of_table(text, clock_hz).map_err(|why| Failure::Invalid(list.clone(), why))?;
-            (list.clone(), vec![Steps::Listed(steps)])
-        } else if let Some(run_steps) = run_steps {
-            (path, run_steps.into_iter().map(Steps::Listed).collect())
-        } else {
-            let list = match &scenario.source {
-                ScenarioSource::Motion(motion) => Some(motion.axis_list()),
-                _ => None,
-            };
-            let plans = plan_lists(list);
-            let plans = plans.map_err(of_motion).map_err(wrong)?;
-            (path, plans.into_iter().flatten().map(Steps::Planned).collect())
+        let (path, listed, axes) = match source {
+            StepSource::List(list) => {
+                let text = scenarios::text(list)?;
+                let steps = steps_of_table(&text, clock_hz);
+                let steps = steps.map_err(|why| Failure::Invalid(list.to_owned(), why))?;
+                (list.to_owned(), Some(text), vec![Steps::Listed(steps)])
+            }
+            StepSource::Motion(motion) => {
+                let plans = plan_lists([motion.axis_list()]).map_err(of_motion).map_err(wrong)?;
+                (path, None, plans.into_iter().flatten().map(Steps::Planned).collect())
+            }
+            StepSource::Run(steps) => (path, None, steps.into_iter().map(Steps::Listed).collect()),
         };
         Ok(Self { path, scenario, listed, clock_hz, pulse, axes, tolerance, search })
     }

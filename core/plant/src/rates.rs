@@ -29,7 +29,7 @@ const HOLD_S: f64 = 0.1;
 /// Default acceleration of a ramp in steps/s^2.
 pub const RAMP_STEPS_S2: f64 = 200_000.0;
 /// Time per rate of the resonance map, in s.
-const MAP_S: f64 = 0.6;
+pub const RESONANCE_S: f64 = 0.6;
 
 // Rates in steps/s.
 const FIRST_RATE: f64 = 4000.0;
@@ -169,9 +169,9 @@ pub struct Resonance {
 pub fn resonance(setup: &Setup, rate: f64) -> Result<Resonance, Vec<Refused>> {
     let microsteps = setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
     // Steps continue to the end, so that the motor does not stop before.
-    let steps = (rate * MAP_S) as u64 + 1;
-    let from = FIRST_STEP + cycles_of(setup, 0.5 * MAP_S);
-    let to = FIRST_STEP + cycles_of(setup, MAP_S);
+    let steps = (rate * RESONANCE_S) as u64 + 1;
+    let from = FIRST_STEP + cycles_of(setup, 0.5 * RESONANCE_S);
+    let to = FIRST_STEP + cycles_of(setup, RESONANCE_S);
     let mut observer = Oscillation {
         per_cycle: rate / microsteps / f64::from(setup.clock_hz),
         from,
