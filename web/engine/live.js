@@ -16,7 +16,7 @@ import { compiled } from "./wasm.js";
  * @typedef {{text: string, verified: boolean, why: string | null, stop_acknowledged: boolean, ends: EndPair[], difference: string | null,
  *   raw?: undefined} & Ended} ReportedFramed
  * @typedef {ReportedFramed | ({raw: RawReport} & Ended)} Reported
- * @typedef {{seconds: number, curves_from: number, received: number, replies: number, latest_ms: number, set_backs: number, set_back_ms: number,
+ * @typedef {{seconds: number, curves_from: number, received: number, replies: number, max_delay_ms: number, set_backs: number, set_back_ms: number,
  *   records_all: boolean, missed: number, controllers: {state: string | null, queued: number | null, queue_depth: number, positions: number[],
  *   faults: string[], ticks_done: number, curves: number[][]}[]}} Served
  * @typedef {Served & {scenario: string, digests: string[], why: string | null, whole: boolean, lost: string, times: Blob}} Recorded

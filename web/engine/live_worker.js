@@ -178,7 +178,7 @@ async function serve({ serve: json, ...streams }) {
     report();
     const times = new Blob([device.times()], { type: "application/json" });
     postMessage({
-      recorded: { ...device.recording(), ...device.state(), times, missed: missedReplyBytes, lost: port.lost },
+      recorded: { ...device.verified_recording(), ...device.state(), times, missed: missedReplyBytes, lost: port.lost },
     });
     device.free();
   });

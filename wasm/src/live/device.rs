@@ -38,7 +38,7 @@ struct SessionState {
     received: u64,
     replies: u64,
     /// Maximum delay of a reply.
-    latest_ms: f64,
+    max_delay_ms: f64,
     set_backs: u64,
     set_back_ms: f64,
     records_all: bool,
@@ -63,8 +63,8 @@ pub struct LiveDevice {
     clock: SessionClock,
     traces: Vec<LiveTrace>,
     times: SessionTimes,
-    replies: u64,
-    latest_ns: u64,
+    reply_count: u64,
+    max_delay_ns: u64,
 }
 
 #[wasm_bindgen]
@@ -84,8 +84,8 @@ impl LiveDevice {
             session,
             input: Input::default(),
             clock,
-            replies: 0,
-            latest_ns: 0,
+            reply_count: 0,
+            max_delay_ns: 0,
         })
     }
 
@@ -94,11 +94,11 @@ impl LiveDevice {
         self.session.experiment().baud()
     }
 
-    /// Runs the model for at most 1 ms. Returns whether it is still behind.
-    pub fn round(&mut self, ms: f64) -> bool {
+    /// Runs the model for at most 1 ms, `elapsed_ms` after the start. Returns whether it is still behind.
+    pub fn round(&mut self, elapsed_ms: f64) -> bool {
         let now = self.session.now();
         let clock_hz = u64::from(self.session.experiment().config().clock_hz());
-        let target = self.clock.target(nanos(ms), now);
+        let target = self.clock.target(nanos(elapsed_ms), now);
         let step = (clock_hz / 1000).clamp(1, MAX_ROUND);
         let to = target.min(Instant(now.0 + step));
         self.input.feed(&mut self.session, to + Cycles(ROUNDS_AHEAD * step));
@@ -109,27 +109,27 @@ impl LiveDevice {
     }
 
     /// Reply bytes up to now.
-    pub fn replies(&mut self, ms: f64) -> Vec<u8> {
-        let Self { session, clock, times, replies, latest_ns, .. } = self;
+    pub fn replies(&mut self, elapsed_ms: f64) -> Vec<u8> {
+        let Self { session, clock, times, reply_count, max_delay_ns, .. } = self;
         let mut bytes = Vec::new();
         for reply in session.take_replies() {
             bytes.push(reply.byte);
             // A reply ends with its delimiter.
             if reply.byte == 0 {
-                *replies += 1;
-                let late = clock.late_ns(nanos(ms), reply.end);
-                *latest_ns = (*latest_ns).max(late);
-                times.reply(&reply, nanos(ms), late);
+                *reply_count += 1;
+                let late = clock.late_ns(nanos(elapsed_ms), reply.end);
+                *max_delay_ns = (*max_delay_ns).max(late);
+                times.reply(&reply, nanos(elapsed_ms), late);
             }
         }
         bytes
     }
 
     /// Receives bytes; returns how many were accepted. The others must wait, as on a line.
-    pub fn receive(&mut self, bytes: &[u8], ms: f64) -> usize {
+    pub fn receive(&mut self, bytes: &[u8], elapsed_ms: f64) -> usize {
         let count = self.input.push(bytes);
         if count > 0 {
-            self.times.chunk(nanos(ms), self.session.now(), count);
+            self.times.chunk(nanos(elapsed_ms), self.session.now(), count);
         }
         count
     }
@@ -143,7 +143,7 @@ impl LiveDevice {
 
     /// Its state (`SessionState`).
     pub fn state(&self) -> Result<JsValue, JsError> {
-        let Self { session, clock, traces, replies, latest_ns, .. } = self;
+        let Self { session, clock, traces, reply_count, max_delay_ns, .. } = self;
         let experiment = session.experiment();
         let clock_hz = experiment.config().clock_hz().max(1);
         let to = session.now();
@@ -174,8 +174,8 @@ impl LiveDevice {
             seconds: to.0 as f64 / f64::from(clock_hz),
             curves_from: from.0 as f64 / f64::from(clock_hz),
             received: session.received(),
-            replies: *replies,
-            latest_ms: *latest_ns as f64 / 1e6,
+            replies: *reply_count,
+            max_delay_ms: *max_delay_ns as f64 / 1e6,
             set_backs: setbacks.count,
             set_back_ms: clock.nanos(setbacks.cycles) as f64 / 1e6,
             records_all: session.records_all(),
@@ -190,7 +190,7 @@ impl LiveDevice {
     }
 
     /// The session as a scenario, repeated and compared (`Recorded`).
-    pub fn recording(&self) -> Result<JsValue, JsError> {
+    pub fn verified_recording(&self) -> Result<JsValue, JsError> {
         let recording = self.session.recording();
         object(&Recorded {
             why: recording.verify().err().map(|why| why.to_string()),

@@ -107,7 +107,7 @@ export function finalStates({ ends, difference, stopped, verified }) {
 }
 
 /** The state of the page as a device. @param {Served} served */
-export function servedText({ seconds, received, replies, latest_ms, set_backs, set_back_ms, missed, controllers }) {
+export function servedText({ seconds, received, replies, max_delay_ms, set_backs, set_back_ms, missed, controllers }) {
   const each = controllers.map(({ state, queued, queue_depth, positions, faults }) =>
     [
       state ?? "raw",
@@ -121,7 +121,7 @@ export function servedText({ seconds, received, replies, latest_ms, set_backs, s
   const lag =
     set_backs > 0
       ? ` Not in real time: the clock was set back ${counted(set_backs, "time")}, ${set_back_ms.toFixed(0)} ms in total.`
-      : ` Replies at most ${ms(latest_ms)} late.`;
+      : ` Replies at most ${ms(max_delay_ms)} late.`;
   const lost = missed > 0 ? ` ${counted(missed, "byte")} of replies not read.` : "";
   return `${seconds.toFixed(1)} s: ${counted(received, "byte")} received, ${repliesText(replies)}; ${each.join("; ")}.${lag}${lost}`;
 }
