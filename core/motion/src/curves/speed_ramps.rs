@@ -8,6 +8,7 @@
 //!         t_s           T-t_s  T
 //! ```
 
+use crate::curves::curve::greater;
 use crate::curves::numeric::Shape;
 use crate::curves::phases::{RelativeState, State};
 use crate::curves::ramp::Ramp;
@@ -130,7 +131,7 @@ impl Shape for SpeedRamps {
             return 0.0;
         }
         let vp = self.plateau_speed();
-        let change = libm::fmax(libm::fabs(vp - self.start_speed), libm::fabs(vp - self.end_speed));
+        let change = greater(libm::fabs(vp - self.start_speed), libm::fabs(vp - self.end_speed));
         change / (self.ramp_s * self.ramp_s) * self.shape.max_curvature()
     }
 

@@ -111,8 +111,8 @@ impl UncompensatedSlices {
             lost_steps += missing;
             if *count > 0 {
                 // A shortened slice has the plateau's rate. Steps are rounded down, so no rate exceeds the top speed.
-                let length_s = libm::fmin(exact.duration_s() - index as f64 * self.slice_s, self.slice_s);
-                top_rate = greater(top_rate, libm::fmin((count + missing) as f64 / length_s, top_speed));
+                let length_s = lesser(exact.duration_s() - index as f64 * self.slice_s, self.slice_s);
+                top_rate = greater(top_rate, lesser((count + missing) as f64 / length_s, top_speed));
             }
             sum += count;
         }
