@@ -61,11 +61,13 @@ impl Points {
 
     pub(crate) fn from_exact(exact: Vec<Point>, interpolation: Interpolation) -> Option<Self> {
         let mut pieces: Vec<Cubic> = Vec::with_capacity(exact.len());
+        let mut slopes: Vec<(f64, f64)> = Vec::with_capacity(exact.len());
         for (start, end) in exact.iter().zip(exact.iter().skip(1)) {
             let (from_s, to_s) = (start.time_s.high, end.time_s.high);
             let (from, to) = (start.position.high, end.position.high);
             if to_s > from_s {
                 let speed = (to - from) / (to_s - from_s);
+                slopes.push((to_s - from_s, speed));
                 pieces.push(Cubic { from_s, to_s, from, to, from_speed: speed, to_speed: speed });
             }
         }
@@ -74,7 +76,7 @@ impl Points {
         }
         let is_smooth = interpolation == Interpolation::Smooth;
         if is_smooth {
-            set_smooth_slopes(&mut pieces);
+            set_smooth_slopes(&mut pieces, &slopes);
         }
         let end_positions = end_positions(&pieces, &exact);
         debug_assert!(
@@ -204,11 +206,9 @@ fn end_positions(pieces: &[Cubic], exact: &[Point]) -> Vec<i64> {
     positions.collect()
 }
 
-fn set_smooth_slopes(pieces: &mut [Cubic]) {
-    // Each piece is still straight.
-    let mean: Vec<(f64, f64)> =
-        pieces.iter().map(|piece| (piece.to_s - piece.from_s, piece.to_speed)).collect();
-    let inner = mean.windows(2).map(|pair| match pair {
+/// Joins the pieces smoothly; `straight` has the duration and the slope of each.
+fn set_smooth_slopes(pieces: &mut [Cubic], straight: &[(f64, f64)]) {
+    let inner = straight.windows(2).map(|pair| match pair {
         &[before, after] => slope_between(before, after),
         _ => 0.0,
     });
