@@ -126,7 +126,7 @@ pub(crate) fn no_plant(path: &Path) -> Failure {
 /// The problem; for an unknown field, with the most similar name.
 pub(crate) fn with_hint(problem: &Problem) -> String {
     let text = problem.to_string();
-    // Already the first characters are not those of an object.
+    // The first characters show that this is not a JSON object.
     if matches!(problem.cause, Cause::Syntax { line: 1, column: 1 | 2, .. }) {
         return format!("not a scenario: {text}; open a recording with stepscope capture");
     }
@@ -148,7 +148,7 @@ impl fmt::Display for Failure {
             }
             Self::Truncated(path, why) => write!(
                 f,
-                "{}: the recording is truncated: {why}; the results cover the part before",
+                "{}: the recording is truncated: {why}; the results cover only the data before that point",
                 Escaped::path(path)
             ),
             Self::Option(why) | Self::Check(why) => f.write_str(why),

@@ -25,11 +25,12 @@ const MAX_PRINTED: usize = 8;
 pub(crate) struct Arguments {
     /// Scenario: a JSON file or a preset's name; `-` reads standard input
     ///
-    /// The seed determines the noise and the bit rates of the receivers. By default, two motors turn in opposite
-    /// directions for 40 ticks.
+    /// Without a scenario, two motors turn in opposite directions for 40 ticks.
     #[arg(value_name = "SCENARIO")]
     file: Option<PathBuf>,
     /// Number of seeds to run
+    ///
+    /// The seed determines the noise and the bit rates of the receivers.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = whole::<u32>(1..=u32::MAX.into()))]
     seeds: u32,
     /// First seed

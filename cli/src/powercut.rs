@@ -23,8 +23,8 @@ pub(crate) struct Arguments {
     scenario: PathBuf,
     /// Number of power cuts
     ///
-    /// If the run has fewer cycles, there is one cut per cycle. Otherwise the cycles are random; half of them are during
-    /// writes of records.
+    /// If the run has fewer cycles, there is one cut per cycle. Otherwise the cuts are at random cycles, about half of them
+    /// while the memory is being written.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = whole::<u32>(1..=10_000_000))]
     cuts: u32,
     /// Random seed

@@ -71,7 +71,7 @@ pub(crate) struct Arguments {
     panel: Option<PathBuf>,
     /// Write a scenario that replays each byte, forced level or segment of the run
     ///
-    /// It includes the noise, so its run has the same traces.
+    /// The bytes already contain the effects of noise, so the run has the same traces.
     #[arg(long, value_name = "FILE")]
     line: Option<PathBuf>,
     /// Controller to report: 0 is the scenario's own, 1 the first of `controllers`
@@ -150,7 +150,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     timing.map_or(Ok(()), |timing| arguments.timing.result(&timing))
 }
 
-/// The outputs of each controller; files and timing are those of the selected one.
+/// The outputs of each controller; files and timing are for the selected one.
 fn open_all(
     arguments: &Arguments,
     outputs: &mut Outputs,

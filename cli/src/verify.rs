@@ -1,4 +1,4 @@
-//! `stepscope open --verify`: compares a run with that of the link's sender.
+//! `stepscope open --verify`: compares a run with the sender's run.
 
 use crate::{failure::Failure, progress::Progress, terminal};
 use std::{io::Write, path::PathBuf};

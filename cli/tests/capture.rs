@@ -270,7 +270,7 @@ fn reports_the_readable_part_of_a_truncated_file() {
     assert!(out.contains("channel 0  3 steps: 3 right"), "{out}");
     assert!(
         err.starts_with("-: the recording is truncated: line 3: ")
-            && err.ends_with("; the results cover the part before\n"),
+            && err.ends_with("; the results cover only the data before that point\n"),
         "{err}"
     );
     let (code, out, err) = stepscope(&["capture", "-"], "a word or two\n");

@@ -227,7 +227,7 @@ fn rejects_reversed_ranges_and_indexes_out_of_range() {
         ),
         (
             &["capture", "recorded-step-table", "--against", "framed-link", "--align", MAX_INDEX],
-            "--align: 18446744073709551615 is out of range; the plan has ",
+            "--align: 18446744073709551615 is out of range; the run has ",
         ),
         (&["capture", "recorded-step-table", "--map", "STEP16=#0"], "use STEP0 to STEP15"),
         (&["capture", "recorded-step-table", "--map", "STEP0=#99"], "there is no channel #99; use one of "),

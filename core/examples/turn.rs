@@ -1,4 +1,4 @@
-//! Runs one turn, and compares its step times with those of a step generator.
+//! Runs one turn, and compares its step times with the output of a step generator.
 //!
 //! `cargo run -p stepscope-core --example turn`
 
@@ -10,6 +10,7 @@ fn main() -> Result<(), Problems> {
     let run = run(&scenario)?; // the actual pulses, cycle by cycle
     println!("{} steps, digest {:016x}", due.len(), run.digest());
     assert_eq!(run.positions(), [3200]);
-    assert_eq!(first_difference(&due, &due, Cycles(16)), None); // second list: those of your own step generator
+    // Replace the second `due` with the steps of your own generator.
+    assert_eq!(first_difference(&due, &due, Cycles(16)), None);
     Ok(())
 }

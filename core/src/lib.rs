@@ -17,7 +17,8 @@
 //!     let run = run(&scenario)?; // the actual pulses, cycle by cycle
 //!     println!("{} steps, digest {:016x}", due.len(), run.digest());
 //!     assert_eq!(run.positions(), [3200]);
-//!     assert_eq!(first_difference(&due, &due, Cycles(16)), None); // second list: those of your own step generator
+//!     // Replace the second `due` with the steps of your own generator.
+//!     assert_eq!(first_difference(&due, &due, Cycles(16)), None);
 //!     Ok(())
 //! }
 //! # #[cfg(not(feature = "sim"))]
@@ -78,7 +79,7 @@
 //! # let mut recording = StoredRun::default();
 //! # Experiment::from_json("{}").expect("the default motion").run(&mut recording);
 //! # let plan = steps(&recording.trace, 0);
-//! // Your steps: here those of the plan, one of them missing.
+//! // Your steps: here the planned steps, one of them missing.
 //! let mut own = plan.clone();
 //! own.remove(2000);
 //! let side = |steps| Side { steps, clock_hz: 16_000_000, values: &[] };

@@ -205,7 +205,7 @@ struct Preview<'a> {
 #[wasm_bindgen]
 impl CaptureFile {
     /// Reads a file of `size` bytes with `read(at, length)` and reports progress to `watch(bytes)`. Saves at most `most`
-    /// changes, bytes or positions. Of more than 64 channels those of `map` are read first. `base` is that of written bytes.
+    /// changes, bytes or positions. Of more than 64 channels, the channels of `map` are read first. `base` is the base of written bytes.
     #[wasm_bindgen(constructor)]
     pub fn new(
         read_piece: Function,

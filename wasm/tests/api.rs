@@ -291,7 +291,7 @@ fn every_timing_violation_of_a_driver_is_listed_with_its_cycle() {
     ];
     assert_eq!(totals, expected.map(|(name, required, count)| (name.to_owned(), required, count)));
     assert_eq!(list(&rules[0], "by_channel").len(), 1);
-    assert_eq!(number(&get(&rules[2], "least"), "measured_cycles"), 8.0);
+    assert_eq!(number(&get(&rules[2], "shortest"), "measured_cycles"), 8.0);
 
     let violations = list(&timing, "violations");
     assert_eq!(violations.len(), 131);

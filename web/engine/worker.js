@@ -174,7 +174,7 @@ async function search(args) {
   let rows = FIRST_SLICE;
   for (;;) {
     const before = performance.now();
-    const found = simulation.filter_on(rows);
+    const found = simulation.advance_filter(rows);
     if (found.done) return { note, ...found };
     rows = nextSliceSize(rows, performance.now() - before);
     await yieldToMessages();

@@ -32,9 +32,9 @@ export function derivedRows(state, derived) {
     // The exact end of packets, of line scripts and of runs with line faults is known only after the run.
     [
       line.protocol === "framed" && !isLineless && !sends
-        ? "Duration, about"
+        ? "Approximate duration"
         : sends || "packets" in source || (!isLineless && !hasNoFaults(line))
-          ? "Duration at most"
+          ? "Maximum duration"
           : "Duration",
       si(derived.duration_s, "s"),
       "",

@@ -20,7 +20,7 @@ export function driverItems(kit, { driver_timing: driver }, sheets) {
       () =>
         kind === "none"
           ? null
-          : // Custom rules start with those of the selected driver.
+          : // Custom rules start with the selected driver's rules.
             kind === "rules"
             ? { rules: { ...kit.samples.rules, ...known?.rules } }
             : { preset: kind },

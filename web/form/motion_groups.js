@@ -1,4 +1,4 @@
-/** Groups of moves that start and end together: of equal time, on a straight line, or through way-points. */
+/** Groups of moves that start and end together: of equal time, on a straight line, or through waypoints. */
 import { button, element } from "../dom.js";
 import { get } from "../state/paths.js";
 import { moveFields } from "./axes.js";
@@ -64,7 +64,7 @@ function groupItem(kit, group, index) {
   return kit.item(name, path, [head, ...parts], `Group.${kind}`);
 }
 
-/** A quantity of each axis. @param {Kit} kit @param {string} path @param {string} group @param {string} list @param {string} name  Of one of them. */
+/** A quantity of each axis. @param {Kit} kit @param {string} path @param {string} group @param {string} list @param {string} name  Name of one quantity. */
 function perAxis(kit, path, group, list, name) {
   return Array.from({ length: axisCount(kit) }, (_, axis) =>
     kit.row(`${path}.${list}[${axis}]`, itemField(group, list, axis, `${name}, axis ${axis}`)),

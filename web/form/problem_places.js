@@ -5,7 +5,7 @@ import { pathText, withLabels } from "./schema.js";
 /** @typedef {import("../state/types.js").Problem} Problem */
 /** @typedef {{fields: Map<string, string>, parts: Map<string, string>, others: Problem[]}} AssignedProblems  Messages by the path of a field or of a part. */
 
-/** All problems. Those of drafts replace those of their previous values. @param {Pick<import("../state/types.js").State, "drafts" | "validation">} state @returns {Problem[]} */
+/** All problems. Problems of drafts replace the problems of their previous values. @param {Pick<import("../state/types.js").State, "drafts" | "validation">} state @returns {Problem[]} */
 export function problemsOf({ drafts, validation }) {
   const paths = Object.keys(drafts);
   const isDraft = (/** @type {string} */ path) => paths.some((at) => isIn(path, at) || isIn(at, path));

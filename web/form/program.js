@@ -90,7 +90,7 @@ function profile(kit, path, group) {
   const { moves } = kit.samples;
   return [
     kit.errorOf(at),
-    kit.toggle(at, "Motion instead of intervals", Boolean(kind), { cosine: moves.cosine }),
+    kit.toggle(at, "Use a motion instead of a list of intervals", Boolean(kind), { cosine: moves.cosine }),
     ...(kind
       ? [
           kit.kindSelect("Kind of profile motion", at, kind, labels("Move"), (to) =>

@@ -15,7 +15,7 @@ class Canceled extends Error {}
 
 /** @param {{engine: Engine} & import("../state/types.js").Page} page  @param {[string, (state: State, engine: Engine) => Offer[]][]} others  Files of other parts of the page, with their titles. @param {import("./lazy_popover.js").Popover} popover @returns {import("./lazy_popover.js").Content} */
 export function createExports({ engine, now }, others, { isOpen }) {
-  const part = /** @type {HTMLSelectElement} */ (byId("export-stretch"));
+  const part = /** @type {HTMLSelectElement} */ (byId("export-range"));
   const list = byId("export-list");
   const status = byId("export-status");
   const cancel = byId("export-cancel");

@@ -20,7 +20,7 @@ export function createHealth({ engine, dispatch, now }) {
   /** Shows where a fault was raised first. @param {string} name */
   async function showFault(name) {
     /** @type {FirstFault[] | null} */
-    const faults = await engine.request("fault_places").catch(unlessDropped);
+    const faults = await engine.request("first_faults").catch(unlessDropped);
     const fault = faults?.find((each) => each.name === name);
     if (!fault) return;
     open(fault.row === null ? "pulses" : "packets");

@@ -48,13 +48,13 @@ export function marginsTable(timing) {
   ];
   return csv([
     head,
-    ...(timing?.rules ?? []).map(({ rule, required_ns, required_cycles, least, violations }) => [
+    ...(timing?.rules ?? []).map(({ rule, required_ns, required_cycles, shortest, violations }) => [
       rule,
       required_ns,
       required_cycles,
-      least?.measured_cycles,
-      least?.cycle,
-      least?.channel,
+      shortest?.measured_cycles,
+      shortest?.cycle,
+      shortest?.channel,
       violations,
     ]),
   ]);

@@ -8,7 +8,7 @@ export function selected({ result }) {
 }
 
 /**
- * The derived values of the scenario in the form; if it is invalid, those of the last run.
+ * The derived values of the scenario in the form; if it is invalid, the values of the last run.
  * @param {State} state @returns {{derived: import("./types.js").Derived | null, fresh: boolean}}
  */
 export function derivedShown({ validation, drafts, result, validated, revision }) {

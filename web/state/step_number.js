@@ -66,7 +66,7 @@ export function added(text, place, by, rounds = false) {
 }
 
 /**
- * Steps the digit before the caret, which stays behind it. @param {string} text @param {number} caret @param {number} by
+ * Steps the digit before the caret, which stays after it. @param {string} text @param {number} caret @param {number} by
  * @param {number} [place]  The place of the previous step, because `100` − 100 has no hundreds left. @param {boolean} [rounds]  See `added`.
  * @returns {Stepped | null}
  */
@@ -75,7 +75,7 @@ export function stepped(text, caret, by, place = placeAt(text, caret) ?? 0, roun
   return next === null ? null : { text: next, caret: caretAt(next, place), place };
 }
 
-/** The caret behind a digit. @param {string} text @param {number} place */
+/** The caret after a digit. @param {string} text @param {number} place */
 export function caretAt(text, place) {
   const parts = partsOf(text);
   if (!parts) return text.length;

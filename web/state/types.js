@@ -52,7 +52,7 @@
  * @typedef {{total: number, shown: number, matches: number, unit: string, rows: PacketRow[]}} PacketPage
  * @typedef {{cycle: number, channel: number, rule: string, measured_cycles: number, required_cycles: number}} Violation
  * @typedef {{rule: string, required_ns: number, required_cycles: number, violations: number, by_channel: number[],
- *   least: {measured_cycles: number, cycle: number, channel: number} | null}} RuleResult
+ *   shortest: {measured_cycles: number, cycle: number, channel: number} | null}} RuleResult
  * @typedef {{driver: string | null, total: number, rules: RuleResult[], violations: Violation[]}} Timing
  * @typedef {{fundamental_hz: number, periods: number, order: number, periodic: boolean,
  *   position: Float64Array, speed: Float64Array, acceleration: Float64Array, acceleration_filtered?: Float64Array,
@@ -68,7 +68,7 @@
  * @typedef {{start: number, end: number}} Span  Cycles, start < end.
  * @typedef {{left: number, top: number, right: number, bottom: number}} Plot  CSS pixels in a canvas.
  * @typedef {"own" | "shared" | `preset:${string}`} Origin  Where the visible scenario comes from.
- * @typedef {{title: boolean, note: boolean}} Borrowed  Whether name and note are still those of the preset, link or file.
+ * @typedef {{title: boolean, note: boolean}} Borrowed  Whether name and note are still unchanged from the preset, link or file.
  * @typedef {{scenario: Scenario, origin: Origin, borrowed: Borrowed, drafts: State["drafts"]}} Moment  One step of the history.
  * @typedef {{revision: number, summary: Summary, ms: number, controller: number, derived: Derived | null}} Result  The result of a run, with the visible controller and the derived values of its scenario.
  * @typedef {{phase: "idle" | "waiting" | "running" | "done" | "failed", progress: Progress | null, message: string}} Run
@@ -80,7 +80,7 @@
  * @typedef {{start: number, end: number, controller: number, cycle: number}} TraceLocation  The window and the cycle that a message links to, in cycles.
  * @typedef {{edge: number, cycle: number}} Mark  An edge by its number, and its cycle.
  * @typedef {{error: string | null, same: boolean, edges: number, version: string | null, own_version: string, controller: number,
- *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} SenderComparison  Comparison of a run with that of the sender of the link.
+ *   after: Mark | null, until: Mark | null, shorter: "this" | "other" | null}} SenderComparison  Comparison of a run with the run of the link's sender.
  * @typedef {{window?: Span, controller?: number, axis?: number, a?: number, b?: number, view?: string, sides?: {[area: string]: string},
  *   unit?: "steps" | "mm" | "deg", study?: StudyName, quantities?: string[]}} ViewPart  The view in a link; missing parts have their defaults.
  *

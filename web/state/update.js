@@ -112,7 +112,7 @@ export function update(state, message) {
     case "rows":
       return { ...state, panes: { ...state.panes, pulses: { ...state.panes.pulses, ...message.rows } } };
     case "view":
-      // The user's choice is newer than that of a link that is still running.
+      // The user's choice is newer than the link that is still running.
       return {
         ...state,
         view: message.view,

@@ -65,7 +65,7 @@ export function color(name) {
   return hex;
 }
 
-// This listener is registered before those of the views, so they redraw with the new colors.
+// This listener is registered before the listeners of the views, so they redraw with the new colors.
 document.addEventListener("themechange", () => known.clear());
 
 let family = "";

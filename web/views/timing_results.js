@@ -42,7 +42,7 @@ export function createResults({ engine, drivers, showNote, dispatch, now }) {
   /** Shows the first violation of a rule, or the time with the smallest slack. @param {string} rule */
   function showRule(rule) {
     const first = timing?.violations.findIndex((each) => each.rule === rule) ?? -1;
-    const { least: shortest, required_cycles } = timing?.rules.find((each) => each.rule === rule) ?? {};
+    const { shortest, required_cycles } = timing?.rules.find((each) => each.rule === rule) ?? {};
     if (first >= 0) return show(first);
     if (!shortest) return showNote(`${ruleName(rule)}: not measured in this run.`);
     current = -1;

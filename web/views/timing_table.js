@@ -64,16 +64,16 @@ export function paintTiming(timing, { state, drivers, showRule }) {
       : "",
   );
   byId("violations").hidden = total === 0;
-  const rows = (timing?.rules ?? []).map(({ rule, required_ns, least, violations }) => {
+  const rows = (timing?.rules ?? []).map(({ rule, required_ns, shortest, violations }) => {
     // From the printed digits, so that the columns agree.
-    const slack = least && Number((least.measured_cycles / clock).toPrecision(DIGITS)) - required_ns * 1e-9;
+    const slack = shortest && Number((shortest.measured_cycles / clock).toPrecision(DIGITS)) - required_ns * 1e-9;
     const isViolated = violations > 0;
     return element(
       "tr",
       isViolated ? { class: "bad" } : {},
       element("th", { scope: "row" }, ruleButton(rule, isViolated, showRule)),
       ...[
-        least ? cyclesText(least.measured_cycles) : "–",
+        shortest ? cyclesText(shortest.measured_cycles) : "–",
         required_ns === 0 ? "–" : time(required_ns * 1e-9),
         slack === null || required_ns === 0 ? "–" : `${slack < 0 ? "" : "+"}${si(slack, "s", DIGITS + 2)}`,
         isViolated ? count(violations) : required_ns === 0 ? "–" : "0",

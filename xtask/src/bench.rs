@@ -97,7 +97,7 @@ pub(crate) async fn against(quick: bool, rev: &str) -> Result<()> {
     }
     print!("\n{}", table::against(&blocks, &before)?);
     println!(
-        "\nRatios are speeds now divided by those of {rev}: of the best calls in a block of {} rounds, the median of {} blocks ± its \
+        "\nRatios are current speeds divided by the speeds at {rev}: of the best calls in a block of {} rounds, the median of {} blocks ± its \
          median absolute deviation.",
         effort.rounds, effort.blocks
     );

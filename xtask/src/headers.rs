@@ -55,7 +55,7 @@ impl Headers {
         Ok(Self { rules })
     }
 
-    /// The headers of a reply for `path`, those of earlier rules first.
+    /// The headers of a reply for `path`, from earlier rules first.
     pub(crate) fn of(&self, path: &str) -> impl Iterator<Item = (&HeaderName, &HeaderValue)> {
         let covering = self.rules.iter().filter(move |rule| rule.covers(path));
         covering.flat_map(|rule| rule.headers.iter().map(|(name, value)| (name, value)))

@@ -141,7 +141,7 @@ enum Task {
         /// Write the table of docs/benchmarks.md from the last measurement
         #[arg(long, alias = "readme", conflicts_with_all = ["quick", "against", "page", "live"])]
         table: bool,
-        /// Compare the kernels with those of this commit
+        /// Compare the kernels with this commit's
         #[arg(long, value_name = "REV")]
         against: Option<String>,
     },

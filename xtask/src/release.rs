@@ -178,7 +178,7 @@ fn archive(name: &str, packed: &[Packed]) -> Result<Vec<u8>> {
     gz.write_all(&bytes).and_then(|()| gz.finish()).context("the archive can't be compressed")
 }
 
-/// The list of sums, as `sha256sum -c` reads it, with this file's; of other files, those of this version that exist.
+/// The list of sums, as `sha256sum -c` reads it, with this file's sum, and the sums of this version's other files that exist.
 fn with_sum(sums: &str, file: &str, bytes: &[u8], exists: impl Fn(&str) -> bool) -> String {
     let mut digits = String::new();
     Sha256::digest(bytes).iter().for_each(|byte| _ = write!(digits, "{byte:02x}"));

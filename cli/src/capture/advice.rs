@@ -1,4 +1,4 @@
-//! Advice on a recording, by options of the command.
+//! Describes each remedy as a command-line option.
 
 use stepscope_core::inspect::recording::remedy::{Note, Remedy};
 use stepscope_core::inspect::recording::report::LineReport;

@@ -39,7 +39,7 @@ impl PlanComparison {
             let (recorded, planned) = (recorded.len(), planned.len());
             arguments.invalid(match arguments.align {
                 Some(step) if recorded > 0 && planned > 0 => format!(
-                    "--align: {step} is out of range; the plan has {planned} {events}, from 0, and the recording {recorded}; use a {event} that both have"
+                    "--align: {step} is out of range; the run has {planned} {events}, from 0, and the recording {recorded}; use a {event} that both have"
                 ),
                 _ => format!(
                     "channel {channel}: {recorded} {events} recorded and {planned} planned, so there is nothing to compare; map a channel to STEP{channel}, or use another --channel"

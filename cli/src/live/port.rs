@@ -475,7 +475,7 @@ mod pty {
                 grantpt(&master)?;
                 unlockpt(&master)?;
                 fcntl_setfl(&master, OFlags::NONBLOCK)?;
-                // A master's settings are those of the other end.
+                // Settings of the master apply to the other end.
                 let mut settings = tcgetattr(&master)?;
                 settings.make_raw();
                 // A rate unknown to the system cannot be compared, so there is no warning.

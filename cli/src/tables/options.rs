@@ -71,10 +71,10 @@ pub(crate) struct Arguments {
     pub(super) walker: bool,
     /// Compare a table with the plan, step by step; exit code 3 if it differs
     ///
-    /// FILE is a table in C; without FILE, the table that --format c would write is compared. The direction of each step must
-    /// be that of the plan, and its time must be within the error that the table states. The stated shortest and longest event
-    /// must be correct, too. The first table of a file belongs to --axis, by default the axis in its header. No file is
-    /// written.
+    /// FILE is a table in C; without FILE, the table that --format c would write is compared. Each step must have the planned
+    /// direction, and its time must be within the error stated in the table. The stated minimum and maximum time between
+    /// events must also match. The first table is compared with --axis (default: the axis in the file's header), the next
+    /// table with the next axis. No file is written.
     #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["json", "with_walker"])]
     pub(super) check: Option<Option<PathBuf>>,
     #[command(flatten)]
@@ -135,10 +135,10 @@ impl WindowName {
 
 #[derive(Clone, Copy, Default, PartialEq, ValueEnum)]
 pub(super) enum Search {
-    /// Fewest entries; if this cannot be proven, column surplus of the summary is an upper bound on the excess
+    /// Fewest entries. If the minimum is not proven, the summary column `surplus` states the maximum number of extra entries
     #[default]
     Fewest,
-    /// Hundreds of times faster: each entry is the longest one that ends near the middle of a window
+    /// Hundreds of times faster: each entry is the longest one whose last step is near the middle of its allowed time range
     Quick,
 }
 
@@ -146,7 +146,7 @@ pub(super) enum Search {
 pub(super) enum FormName {
     /// Each step in its exact cycle
     Exact,
-    /// The table described by the paper of the motion
+    /// The move's table as in its paper (Sonobe 2011, Zhang 2012); other moves have none
     Document,
     /// Few entries, within a maximum error
     Compressed,

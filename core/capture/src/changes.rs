@@ -91,7 +91,7 @@ impl Changes {
         Ok(())
     }
 
-    /// Adds a change. Its tick is at least that of the last change.
+    /// Adds a change. Its tick must not be before the last change.
     pub fn push(&mut self, change: Change) {
         let last = self.last.replace(change);
         self.len += 1;

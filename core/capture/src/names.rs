@@ -58,7 +58,7 @@ const WORDS: [(Kind, &str); 9] = [
     (Kind::De, "DE TXEN"),
 ];
 const ACTIVE_LOW: [&str; 3] = ["ENN", "NEN", "NENABLE"];
-/// CW and CCW only if the name has no other words.
+/// UP and DOWN mean CW and CCW only if all other words name an axis or are in [`NOISE`].
 const UP_DOWN: [&str; 3] = ["UP", "DOWN", "DN"];
 /// Words of encoder inputs, and words that mark `A` and `B` as encoder inputs.
 const PHASES: [(Kind, &str); 2] = [(Kind::A, "ENCA PHA PHASEA QA"), (Kind::B, "ENCB PHB PHASEB QB")];
@@ -167,7 +167,7 @@ impl<'w> Words<'w> {
         }
     }
 
-    /// UP and DOWN with other words than an axis are no pulses.
+    /// UP and DOWN mean CW and CCW only if all other words name an axis or are in [`NOISE`].
     fn is_vague(&self) -> bool {
         self.signals.iter().all(|(_, word)| UP_DOWN.contains(word))
             && !self.others.iter().all(|word| is_noise(word) || is_axis(word))
@@ -175,7 +175,7 @@ impl<'w> Words<'w> {
 }
 
 impl Meaning {
-    /// The meaning of a name. `indexed`: a number at its beginning only counts the file's channels.
+    /// The meaning of a name. `indexed`: a number at its beginning is only a channel index.
     pub(crate) fn from_name(name: &str, indexed: bool) -> Self {
         let name = without_index(name, indexed);
         let (scope, last) = name.rsplit_once('.').unwrap_or(("", name));
@@ -213,7 +213,7 @@ impl Meaning {
     }
 }
 
-/// Whether each name begins with another number, which only counts the channels.
+/// Whether each name begins with a different number, which is only a channel index.
 pub(crate) fn are_indexed<'a>(names: impl Iterator<Item = &'a str>) -> bool {
     let (mut seen, mut count) = (std::collections::BTreeSet::new(), 0);
     for name in names {
@@ -242,7 +242,8 @@ fn without_index(name: &str, indexed: bool) -> &str {
     if indexed && rest.contains(|c: char| c.is_ascii_alphabetic()) { rest } else { name }
 }
 
-/// Splits a name into words in capitals at marks, changes of case, and digits, unless all of it is a known word.
+/// Splits a name at punctuation, at changes of case and after digits, and returns upper-case words. A part that is a known
+/// word is not split.
 fn split_words(name: &str) -> Vec<String> {
     let mut all = Vec::new();
     for part in name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty()) {

@@ -181,7 +181,7 @@ impl<'m, I: Iterator<Item = Change>> Records<'m, I> {
 
     /// Adds a change and returns the pending record if no later change can be in its cycle.
     fn add(&mut self, Change { tick, levels }: Change) -> Option<Record> {
-        // The first levels are those of cycle 0.
+        // The first record has the levels of cycle 0.
         let cycle = if self.pending.is_some() { self.cycle(tick) } else { 0 };
         let (levels, high) = self.levels(cycle, levels);
         let now = Record { cycle: Instant(cycle), levels };

@@ -12,7 +12,7 @@ struct Edges {
     /// The two latest intervals, the later one first.
     latest: [u64; 2],
     intervals: u64,
-    /// Intervals whose neighbors' mean is about equal to them.
+    /// Intervals about equal to the mean of their neighbors.
     even: u64,
     /// Total times at each level.
     high: u64,
@@ -30,7 +30,7 @@ impl Edges {
         if self.intervals > 2 {
             let sum = first.saturating_add(interval);
             let deviation = sum.abs_diff(middle.saturating_mul(2));
-            // Within an eighth of the interval, or within one sample of at least eight.
+            // Within an eighth of the interval, or, for intervals of at least eight samples, within one sample.
             self.even += u64::from(deviation.saturating_mul(8) <= sum || deviation <= 2 && sum >= 16);
         }
         self.latest = [interval, middle];

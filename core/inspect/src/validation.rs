@@ -124,13 +124,13 @@ impl RunCost {
     pub fn of(cost: Cost) -> Self {
         let message = if cost.motor_grid_steps > BUDGET_MOTOR_GRID_STEPS {
             format!(
-                "{} grid steps of all motors: more than the {} that run without confirmation",
+                "the motor simulation takes {} time steps; more than {} need confirmation",
                 grouped(cost.motor_grid_steps as f64),
                 grouped(BUDGET_MOTOR_GRID_STEPS as f64)
             )
         } else if cost.is_over_budget() {
             format!(
-                "up to {} edges and {} packets: more than the {} edges that run without confirmation",
+                "the run has up to {} edges and {} packets; more than {} edges need confirmation",
                 grouped(cost.records as f64),
                 grouped(cost.sends as f64),
                 grouped(BUDGET_RECORDS as f64)

@@ -1,7 +1,7 @@
 //! Bisection: the first integer for which a predicate holds, and the border between two numbers. The predicate must change
 //! only once. Only integers and + - * / are used, so every target gets the same bits.
 
-/// Number of halvings. They reduce the distance to 2^-60, less than an f64 resolves unless one of the numbers is 0.
+/// Number of halvings. They reduce the distance by a factor of 2^60, to less than an f64 resolves unless one of the numbers is 0.
 pub const HALVINGS: u32 = 60;
 
 const MAX_FIRST: u64 = 1 << 32;
@@ -39,7 +39,8 @@ pub(crate) fn first_near(near: u64, end: u64, holds: impl Fn(u64) -> bool) -> u6
     first_in(from, to, holds)
 }
 
-/// The closest numbers on both sides of the border between `from`, where `holds`, and `to` (maybe less), where it does not.
+/// The closest numbers on both sides of the border between `from`, where `holds`, and `to`, which may be less than
+/// `from`, where it does not.
 pub fn border(from: f64, to: f64, holds: impl Fn(f64) -> bool) -> (f64, f64) {
     let (mut from, mut to) = (from, to);
     for _ in 0..HALVINGS {

@@ -102,7 +102,7 @@ parameters! { (Clone, Debug, PartialEq)
     pub struct Staircase {
         /// The paper's L.
         pub distance: Distance = Distance::Steps(10_000.0),
-        /// Speed of the plateau, the paper's f_s. A top speed up to the start speed is that of the whole move.
+        /// Speed of the plateau, the paper's f_s. The whole move has this speed if it is not above the start speed.
         pub top_speed: Speed = Speed::StepsPerSecond(5000.0),
         /// Acceleration level 1 to 5: 1000 to 5000 steps/s^2.
         pub level: u8 = 3,
@@ -201,7 +201,7 @@ parameters! { (Clone, Debug, PartialEq)
     /// The fastest stop.
     pub struct Stop {}
 
-    /// Limits of an axis, for moves without their own.
+    /// Limits of an axis, for moves without limits.
     pub struct AxisLimits {
         pub max_speed: Speed = Speed::StepsPerSecond(10_000.0),
         pub max_acceleration: Acceleration = Acceleration::StepsPerSecond2(100_000.0),

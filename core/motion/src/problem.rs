@@ -108,7 +108,7 @@ fn remedy_for(quantity: &str) -> &'static str {
         "steps of a table" => "a shorter motion, or a table for each part of it",
         "steps to be measured" | "seconds" | "cycles" => "a shorter motion",
         "changes of a shaped curve" => "fewer moves, periods or points, or no input shaper",
-        "way-points of all axes" => "fewer points",
+        "waypoints of all axes" => "fewer points",
         "slices" => "longer slices, a shorter duration or the exact method",
         "sine segments" => "a larger maximum deviation or fewer sines",
         "entries" => "a shorter motion or a larger tolerance",
@@ -174,7 +174,7 @@ pub enum Cause {
     NoSteps {
         steps: f64,
     },
-    /// The time of a point is not later than that of the previous point by at least `min`; all in s.
+    /// The time of a point is not at least `min` later than the previous point's time; all in s.
     NotRising {
         given: f64,
         before: f64,

@@ -34,7 +34,7 @@ impl<C> Problems<C> {
         Self::new(problems).map_or(Ok(()), Err)
     }
 
-    /// These problems and those of `other` at paths that have none yet.
+    /// These problems, and the problems of `other` at paths that have none yet.
     #[must_use]
     pub fn with(mut self, other: Option<Self>) -> Self {
         let known = self.0.len();
@@ -53,7 +53,7 @@ impl<C> Problems<C> {
     }
 }
 
-/// A cause of another crate that contains those of a plan: `?` converts the plan's [`Problems`] to it.
+/// A cause of another crate that contains the causes of a plan: `?` converts the plan's [`Problems`] to it.
 pub trait WiderCause: From<Cause> {}
 
 impl<C: WiderCause> From<Problems> for Problems<C> {

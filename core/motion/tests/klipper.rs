@@ -89,7 +89,7 @@ fn steps_of(segments: &[Segment]) -> u64 {
     segments.iter().filter(|segment| matches!(segment, Segment::Steps { .. })).count() as u64
 }
 
-/// Entries of our compression in Klipper's window and in one of the same width around the due time, and of greedy
+/// Numbers of entries: our compression in Klipper's window, in a window of the same width around the due time, and greedy
 /// compression.
 fn counts(given: Move) -> [u64; 3] {
     let steps = due(given);

@@ -1,4 +1,4 @@
-//! Constants of a motor's equations in full steps (PLANT F2), and of a step of some cycles (F3).
+//! Constants of a motor's equations in full steps (PLANT F2), and of one integration step (F3).
 
 use crate::parameters::MotorModel;
 use crate::sincos::{phi, sincos};
@@ -30,7 +30,7 @@ pub(crate) struct MotorConstants {
 pub(crate) struct Load {
     gravity: f64,
     sine: f64,
-    /// Quarter turns of the sine per full step, and at 0.
+    /// Quarter turns of the sine per full step; `phase`: at position 0.
     rate: f64,
     phase: f64,
 }
@@ -134,7 +134,7 @@ impl MotorConstants {
     }
 }
 
-/// A (sub-)step: with a constant voltage u across a phase, its current changes by a*u, and its mean by b*u.
+/// A (sub-)step: with a constant voltage u across a phase, its current changes by a*u, and the mean current over the step by b*u.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span {
     /// Length in s, and its half.

@@ -63,7 +63,7 @@ parameters! { (Clone, Debug, PartialEq)
         pub diode_v: f64 = 0.7,
     }
 
-    /// A two-phase hybrid stepper motor with its load and driver. The defaults are those of a scenario.
+    /// A two-phase hybrid stepper motor with its load and driver. The defaults are the same as in a scenario.
     pub struct MotorModel {
         pub full_step_deg: f64 = 1.8,
         pub microsteps: u16 = 16,

@@ -139,7 +139,7 @@ fn cycles_of(setup: &Setup, seconds: f64) -> u64 {
 }
 
 /// Whether the motor of channel 0 makes `steps` at a constant rate from rest and stops at the commanded position.
-/// Errors: those of the plant.
+/// Errors: the plant refuses the setup.
 pub fn starts(setup: &Setup, rate: f64, steps: u64) -> Result<bool, Vec<Refused>> {
     let mut slipped = Slipped::default();
     let after = cycles_of(setup, REST_S);
@@ -149,7 +149,7 @@ pub fn starts(setup: &Setup, rate: f64, steps: u64) -> Result<bool, Vec<Refused>
 }
 
 /// Whether the motor of channel 0 follows a ramp of `a` steps/s^2 to a rate, and holds this rate.
-/// Errors: those of the plant.
+/// Errors: the plant refuses the setup.
 pub fn pulls(setup: &Setup, rate: f64, a: f64) -> Result<bool, Vec<Refused>> {
     let mut slipped = Slipped::default();
     trial(setup, ramp(setup.clock_hz, rate, a, HOLD_S), 0, &mut slipped)?;
@@ -165,7 +165,7 @@ pub struct Resonance {
 }
 
 /// Runs the motor of channel 0 at a constant rate in steps/s for 0.6 s.
-/// Errors: those of the plant.
+/// Errors: the plant refuses the setup.
 pub fn resonance(setup: &Setup, rate: f64) -> Result<Resonance, Vec<Refused>> {
     let microsteps = setup.motors.first().map_or(1.0, |motor| f64::from(motor.microsteps));
     // Steps continue to the end, so that the motor does not stop before.

@@ -15,7 +15,7 @@ const TERMS: [[f64; 2]; 7] = [
     [core::f64::consts::FRAC_PI_2, -1.233_700_550_136_169_7],
 ];
 
-/// From 2^51 on, the last bits of the sum with [`ROUND`] are not those of the integer.
+/// From 2^51 on, the last bits of the sum with [`ROUND`] differ from the integer's.
 const FAR: f64 = 2_251_799_813_685_248.0;
 
 /// The nearest integer, ties to even, for |q| below 2^51.

@@ -1,4 +1,4 @@
-//! The tables of `datasheet.md` are those of the register table. `STEPSCOPE_BLESS=1 cargo test -p
+//! The tables of `datasheet.md` equal the register table. `STEPSCOPE_BLESS=1 cargo test -p
 //! stepscope-registers` writes them; the text around them is written by hand.
 #![allow(clippy::expect_used, reason = "a missing file or program fails the test")]
 

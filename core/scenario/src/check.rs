@@ -17,7 +17,7 @@ const MAX_BYTES: usize = 4 << 20;
 /// A valid scenario. Its motions are checked when they are planned.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedScenario {
-    /// One per controller; the first is that of `bus` and `line`.
+    /// One per controller; the first is for `bus` and `line`.
     pub configs: Vec<Config>,
     /// The controllers after the first.
     pub additional: Vec<Controller>,

@@ -28,7 +28,8 @@ impl ToParts for Point {
     }
 }
 
-/// Reads points from a table with two columns, time in s and position: those with these names in a header, else the first two.
+/// Reads points from a table with a time in s and a position: the columns named `time_s` and `position` in the header,
+/// otherwise the first two.
 /// The first row decides between comma, semicolon and tab. With semicolon or tab, decimal commas are allowed.
 /// Errors: [`BadTable`] with the first invalid line. The order of times is checked later.
 pub fn points_of_table(table: &str) -> Result<Vec<Point>, BadTable> {

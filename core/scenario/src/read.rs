@@ -124,7 +124,7 @@ fn read(text: &str, known: Option<u64>) -> (Scenario, Option<Problems>) {
         return (Scenario::default(), Some(newer.into()));
     }
     let mut scenario = Scenario::default();
-    // An unreadable version is reported by `read_into`; names are then those of the newest version.
+    // An unreadable version is reported by `read_into`; then the newest version's names apply.
     let version = given.map_or(VERSION, |given| given as u32);
     let mut problems = read_into(&mut scenario, value, version);
     if known.is_some() {

@@ -11,7 +11,7 @@ use stepscope_peripheral::{config::Bus, signal::MAX_CHANNELS, units::Instant};
 const MAX_SEGMENTS: usize = 1_000_000;
 
 impl SegmentLists {
-    /// The lists, or problems in `validator`, whose path is that of the lists.
+    /// The lists, or problems in `validator`, whose path is the path of the lists.
     pub(crate) fn check(&self, bus: &Bus, validator: &mut Validator) -> Option<CheckedSegments> {
         let before = validator.count();
         let channels = Channels { count: bus.channels, path: "bus.channels" };

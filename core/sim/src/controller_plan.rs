@@ -198,7 +198,7 @@ fn paced(checked: &CheckedScenario, controllers: &[ControllerPlan]) -> Schedule 
     Schedule::paced(start(checked), first.tick(), sends)
 }
 
-/// The packets of a controller: those of the scenario, or one per tick of its plan.
+/// The packets of a controller: from the scenario, or one per tick of its plan.
 struct Packets<'a> {
     plan: &'a ControllerPlan,
     given: Option<&'a [Hex]>,

@@ -54,7 +54,8 @@ pub struct Experiment {
 /// A scenario with valid fields, a plan per controller, and the load of the line.
 type Validated = (CheckedScenario, Vec<ControllerPlan>, Option<f64>);
 
-/// Errors: the problems of all fields and motions. Those of the line need valid fields, those of ticks also valid motions.
+/// Errors: the problems of all fields and motions. The line is only checked if all fields are valid; ticks also need valid
+/// motions.
 fn validate(scenario: &Scenario) -> Result<Validated, Problems> {
     let plans = controller_plan::plans(scenario);
     let checked = match scenario.check() {

@@ -99,7 +99,7 @@ fn exported_files_have_the_bytes_of_the_core() -> Result<()> {
         page.until_digest(&known.digest).await?;
         page.click("#export").await?;
         page.until("document.querySelector('#export-list [data-file]') !== null").await?;
-        page.choose("#export-stretch", "cursors").await?;
+        page.choose("#export-range", "cursors").await?;
         let part = cut(trace, a, b).context("a part")?;
         let (name, text) = saved(&page, ".vcd").await?;
         assert_eq!(name, format!("stepscope-{a}-{b}.vcd"));

@@ -35,7 +35,7 @@ fn cycle(at: f64) -> Instant {
 
 #[wasm_bindgen]
 impl Simulation {
-    /// Sets the filter ([`Request::new`]) for `filter_on`; returns a note about the text, or an empty one.
+    /// Sets the filter ([`Request::new`]) for `advance_filter`; returns a note about the text, or an empty one.
     pub fn filter(&mut self, text: &str, kind: &str, address: Option<u8>, mark: &str, only: bool) -> String {
         let (request, note) = Request::new(text, kind, address, mark, only);
         self.filter = Filter::new(request);
@@ -43,7 +43,7 @@ impl Simulation {
     }
 
     /// Filters up to `count` more rows: `{done, total, shown, matches}`.
-    pub fn filter_on(&mut self, count: u32) -> Result<JsValue, JsError> {
+    pub fn advance_filter(&mut self, count: u32) -> Result<JsValue, JsError> {
         #[derive(Serialize)]
         struct FilterProgress {
             done: bool,
@@ -111,11 +111,11 @@ impl Simulation {
     }
 
     /// Raised fault flags in the order of their bits: `[{name, times, cycle, row}]`, with their first cycle and row.
-    pub fn fault_places(&self) -> Result<JsValue, JsError> {
+    pub fn first_faults(&self) -> Result<JsValue, JsError> {
         object(&self.table().first_faults())
     }
 
-    /// Rows on the line in a range of cycles: `{rows, more}`; no rows above `limit`.
+    /// Rows on the line in a range of cycles: `{rows, more}`; empty if there are more than `limit` rows.
     pub fn packets_in(&self, start_cycle: f64, end_cycle: f64, limit: u32) -> Result<JsValue, JsError> {
         let table = self.table();
         let touching = table.touching(cycle(start_cycle), cycle(end_cycle));
@@ -123,22 +123,22 @@ impl Simulation {
         object(&Rows { rows: rows.into_iter().filter_map(|index| table.row(index)).collect(), more })
     }
 
-    /// Ticks in a range of cycles: `{rows: [{start_cycle, end_cycle, row, fields}], more}`; no rows above `limit`.
+    /// Ticks in a range of cycles: `{rows: [{start_cycle, end_cycle, row, fields}], more}`; empty if there are more than `limit` rows.
     pub fn ticks_in(&self, start_cycle: f64, end_cycle: f64, limit: u32) -> Result<JsValue, JsError> {
         object(&Rows::within(limit, self.table().ticks_touching(cycle(start_cycle), cycle(end_cycle))))
     }
 
-    /// Decoded bytes in a range of cycles, for at most `most_bytes` bytes, with bits for at most `most_bits` bytes.
+    /// Decoded bytes in a range of cycles, for at most `max_bytes` bytes, with bits for at most `max_bits` bytes.
     pub fn decoded(
         &self,
         start_cycle: f64,
         end_cycle: f64,
-        most_bytes: u32,
-        most_bits: u32,
+        max_bytes: u32,
+        max_bits: u32,
     ) -> Result<JsValue, JsError> {
         let decoder = LineDecoder::new(self.table(), &self.selected().stored.trace);
         let (start, end) = (cycle(start_cycle), cycle(end_cycle));
-        object(&decoder.decode(start.0, end.0, most_bytes as usize, most_bits as usize))
+        object(&decoder.decode(start.0, end.0, max_bytes as usize, max_bits as usize))
     }
 
     /// A part of a packet file: `{part, rows, next}`. `format` is `csv`, `hex` (one row per line) or `bin`. It has up to

@@ -158,7 +158,7 @@ impl Simulation {
         recorded.extend(records(bytes));
     }
 
-    /// Sets recorded replies ([`replies::replace`]) to show instead of those of the run.
+    /// Sets recorded replies ([`replies::replace`]) to show instead of the run's replies.
     pub fn set_replies(&mut self, bytes: Vec<u8>) {
         self.replies = Some(bytes);
     }

@@ -61,13 +61,13 @@ struct RuleRow {
     rule: &'static str,
     required_ns: u32,
     required_cycles: u64,
-    least: Option<LeastRow>,
+    shortest: Option<ShortestRow>,
     violations: u64,
     by_channel: Vec<u64>,
 }
 
 #[derive(Serialize)]
-struct LeastRow {
+struct ShortestRow {
     measured_cycles: u64,
     cycle: u64,
     channel: u8,
@@ -111,10 +111,10 @@ fn rule_row(result: &RuleResult, channels: usize) -> RuleRow {
         rule: result.rule.name(),
         required_ns: result.nanos,
         required_cycles: result.required.0,
-        least: result.shortest.map(|least| LeastRow {
-            measured_cycles: least.measured.0,
-            cycle: least.at.0,
-            channel: least.channel,
+        shortest: result.shortest.map(|shortest| ShortestRow {
+            measured_cycles: shortest.measured.0,
+            cycle: shortest.at.0,
+            channel: shortest.channel,
         }),
         violations: result.total(),
         by_channel: result.violations.iter().take(channels).copied().collect(),

@@ -1,4 +1,4 @@
-//! Compares a run with that of the sender of a link.
+//! Compares a run with the run of a link's sender.
 
 use crate::{convert::object, view::simulation::Simulation};
 use serde::Serialize;

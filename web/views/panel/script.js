@@ -85,7 +85,7 @@ export function nameOf({ input, level, push_steps }) {
 /** @param {any[]} panels  Settings of all controllers. @param {number} owner @returns {Entry[]} */
 export const inputsOf = (panels, owner) => panels[owner]?.inputs ?? [];
 
-/** All entries for a controller in the order of time: its own, and the shared ones of the first controller. @param {any[]} panels @param {number} controller @returns {Placed[]} */
+/** All entries for a controller in the order of time: its own entries, and the shared entries of the first controller. @param {any[]} panels @param {number} controller @returns {Placed[]} */
 export function entriesOf(panels, controller) {
   const of = (/** @type {number} */ owner) => inputsOf(panels, owner).map((entry, index) => ({ owner, index, entry }));
   if (controller === 0) return of(0);

@@ -33,7 +33,7 @@ export function createScriptEditor({ report, played, dispatch, now }) {
     return true;
   }
 
-  /** Moves the cursor behind a new press, so that its effect is visible and the next press follows it. @param {number} cycle @param {string} text */
+  /** Moves the cursor after a new press, so that its effect is visible and the next press follows it. @param {number} cycle @param {string} text */
   function moveCursorBehind(cycle, text) {
     if (now().cursors.a !== null) dispatch({ type: "cursor", which: "a", cycle: cycle + shortest() });
     report(text);

@@ -127,7 +127,7 @@ function channelRows(state, channel) {
       ];
 }
 
-/** The visible groups: those that are not hidden, and the one of the selected signal. @param {State} state */
+/** The visible groups: all that are not hidden, and the selected signal's group. @param {State} state */
 export function shownGroups(state) {
   const { hidden } = state.panes.pulses;
   return groupsOf(state).filter(

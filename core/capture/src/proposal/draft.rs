@@ -109,7 +109,8 @@ fn recognize_joined<'a>(meanings: &mut [Meaning], names: impl Iterator<Item = &'
     }
 }
 
-/// Numbers STEP and DIR in order if their numbers are those of pins: one DIR per STEP, and no number twice.
+/// If all STEP and DIR numbers differ and there are as many DIR as STEP, the numbers are pin numbers: renumbers the signals
+/// from 0.
 fn renumber_pins(meanings: &mut [Meaning]) {
     let numbers = |kind: Kind| -> Vec<&str> {
         let signals = meanings.iter().filter_map(|meaning| match meaning {

@@ -119,7 +119,7 @@ fn signals_are_proposed_by_name() {
     }
 }
 
-/// Levels of channels by the times of their edges; all are low at first, those of `high` high.
+/// Levels of channels by the times of their edges; the channels in `high` start high, the others low.
 fn levels(high: u64, edges: &[&[u64]]) -> Vec<(u64, u64)> {
     let mut all: Vec<(u64, u64)> = Vec::new();
     for (channel, edges) in edges.iter().enumerate() {
@@ -144,14 +144,14 @@ fn pulses(from: u64, count: u64, interval: u64, width: u64) -> Vec<u64> {
 #[test]
 fn dir_is_detected_by_the_times_of_its_changes() {
     let step = pulses(100, 40, 100, 10);
-    // A lamp that blinks independently is further away; BUSY is not a DIR by its name.
+    // DIR changes shortly after a STEP rise. LED changes in the middle between two, and its name excludes it.
     let late = [2101, 3101];
     for (names, high, edges, expected) in [
         (&["D0", "D1"][..], 0b10, &[&step[..], &late][..], "STEP0=D0,DIR0=D1"),
         (&["D0", "D1"], 0b01, &[&late, &step], "STEP0=D1,DIR0=D0"),
         (&["STEP", "D1", "LED"], 0, &[&step, &late, &[2050, 3050]], "STEP0=STEP,DIR0=D1"),
         (&["STEP", "LED"], 0, &[&step, &[2050, 3050]], "STEP0=STEP"),
-        // An enable is high throughout the steps, before DIR.
+        // An enable is high throughout the steps, and rises before DIR changes.
         (&["D0", "D1", "D2"], 0, &[&step, &[50, 4200], &[2050]], "STEP0=D0,DIR0=D2"),
         (&["RX", "D1"], 0, &[&step, &late], "STEP0=RX,DIR0=D1"),
         (&["D0", "DIR"], 0, &[&step, &late], "STEP0=D0,DIR0=DIR"),
@@ -219,14 +219,14 @@ fn alternating_edges_are_an_encoder() {
         }
     }
     assert_eq!(proposed(&["D0", "D1"], &levels(0, &[&a, &b])), "A0=D0,B0=D1");
-    // Pulses that overlap are not spaced like its edges, and STEP with DIR does not alternate.
+    // Overlapping pulses are not spaced like the edges of an encoder, and STEP and DIR do not alternate.
     let overlapping = [&pulses(100, 40, 400, 10)[..], &pulses(105, 40, 400, 10)];
     assert_eq!(proposed(&["D0", "D1"], &levels(0, &overlapping)), "STEP0=D0,STEP1=D1");
 }
 
 #[test]
 fn signals_are_proposed_by_behavior_if_names_are_unknown() {
-    // D0 is DIR, D1 STEP, D2 a line of 104 ticks per bit.
+    // D0 is DIR, D1 is STEP, and D2 is a serial line with 104 ticks per bit.
     let mut edges = vec![(0, 0b100)];
     for step in 0..40_u64 {
         let dir = u64::from(step >= 20);

@@ -158,7 +158,7 @@ impl Annotations {
             }
         };
         let channel = self.recorder.channel_named(name);
-        channel.ok_or_else(|| format!("more than {MAX_CHANNELS} decoders; export those of one line"))
+        channel.ok_or_else(|| format!("more than {MAX_CHANNELS} decoders; export the decoders of one line"))
     }
 
     fn base(&mut self) -> Result<Base, String> {

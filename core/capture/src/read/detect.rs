@@ -22,10 +22,10 @@ pub(super) const UNKNOWN: &str = concat!("unknown format; ", formats!());
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Detected {
     pub(super) format: Format,
-    /// Without a unit, whole numbers are not seconds.
+    /// All times are whole numbers; without a unit they are not read as seconds.
     pub(super) whole_times: bool,
     pub(super) table: Option<hex_table::Table>,
-    /// Columns that are not levels, by bit: a count next to STEP and DIR.
+    /// Bit mask of columns that are not levels, such as a step count.
     pub(super) skipped_columns: u64,
 }
 
@@ -119,7 +119,7 @@ fn binary(head: &[u8]) -> Option<&'static str> {
     head.contains(&0).then_some(UNKNOWN)
 }
 
-/// Uses the first rows if a name is ambiguous: an encoder has both lines and a position.
+/// If a column name is ambiguous, the first rows decide: `encoder` can be a line or a position.
 fn by_head(line: &[u8], rows: &[&[u8]], base: Option<Base>) -> Result<Option<Detected>, String> {
     let mut columns = Fields::new();
     let separator = separator(line);
@@ -277,7 +277,7 @@ fn is_sample(line: &[u8]) -> bool {
         && marks.all(|mark| Some(mark) == first && b",;\t|: ".contains(mark))
 }
 
-/// Rising cycles and levels without leading zeros, at least one with more than two digits, which no byte has.
+/// Rising cycles and levels without leading zeros, at least one level above 0xff, so the words are not bytes.
 fn is_trace(lines: &[&[u8]]) -> bool {
     let records: Vec<(u64, u64)> = lines.iter().map_while(|line| stepscope::record(line)).collect();
     let plain =

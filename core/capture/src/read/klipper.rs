@@ -6,8 +6,8 @@
 //! queue_step oid=3 interval=1000 count=4 add=-10    steps 1000, 990, 980 and 970 ticks after the one before
 //! ```
 //!
-//! A line may have several commands after any other text. Commands are stored until the file ends, because those of one
-//! stepper come before earlier ones of another; then their steps become levels in order of time.
+//! A line may have several commands after any other text. Commands are stored until the file ends, because
+//! commands of one stepper may come before earlier commands of another; then their steps become levels in order of time.
 
 use super::recorder::{Names, Recorder, grouped, quoted};
 use super::{decimal::whole, reading::Reader};

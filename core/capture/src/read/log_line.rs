@@ -71,7 +71,7 @@ fn time(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
         return is_apart.then(|| (Time::Clock(stamp), after_mark(rest)));
     }
     if let Some(stamp) = Stamp::without_seconds(text)
-        && let Some(rest) = text.get(stamp.length..).filter(|rest| are_no_seconds(rest))
+        && let Some(rest) = text.get(stamp.length..).filter(|rest| is_time_without_seconds(rest))
     {
         return Some((Time::Clock(stamp), after_mark(rest)));
     }
@@ -128,14 +128,14 @@ fn time_without_colon(text: &[u8]) -> Option<(Time<'_>, &[u8])> {
 }
 
 /// Whether `12:00` is a time: the words after it have no colons.
-fn are_no_seconds(rest: &[u8]) -> bool {
+fn is_time_without_seconds(rest: &[u8]) -> bool {
     let rest = rest.strip_prefix(b":").unwrap_or(rest);
     let text = without_comment(rest);
     rest.first().is_some_and(u8::is_ascii_whitespace) && !text.is_empty() && !text.contains(&b':')
         || text.contains(&b':') && direction(word(rest).0).is_some()
 }
 
-/// Splits off a direction at the end, `55 AA <-`, unless the text shows the bytes.
+/// Splits off a direction at the end, `55 AA <-`, unless it belongs to the text column of the bytes.
 pub(super) fn trailing_direction(rest: &[u8]) -> Option<(&'static str, &[u8])> {
     let text = without_comment(rest);
     let at = text.iter().rposition(u8::is_ascii_whitespace)?;
@@ -239,7 +239,7 @@ fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
         }
         let bare = without_marks(first);
         if bare.is_empty() && direction(first).is_none() {
-            // A mark alone, or none.
+            // Skip a separator or a word of marks only.
             rest = after.get(usize::from(first.is_empty())..).unwrap_or_default();
             continue;
         }
@@ -252,7 +252,7 @@ fn port(rest: &[u8]) -> Result<(String, &[u8]), String> {
         }
         rest = after;
     }
-    // jpnevulator names the port on a line of its own.
+    // jpnevulator names the port on a separate line.
     let mut bytes = Vec::new();
     let label = rest.trim_ascii();
     let is_label = !label.is_empty() && !label.contains(&b' ') && row::parse(label, &mut bytes).is_err();

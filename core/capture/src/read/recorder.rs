@@ -120,7 +120,7 @@ impl Recorder {
         sentences.into_iter().for_each(|sentence| self.note(sentence));
     }
 
-    /// Whether a channel's lost pulses matter: with a map, those of its channels; otherwise those of channels that may have
+    /// Whether a channel's lost pulses matter: with a map, only on its channels; otherwise on channels that may have
     /// pulses. In dumps only known names count, since simulators write many other signals.
     fn reports_lost_pulses(&self, index: usize, name: &str) -> bool {
         let is_dump = self.capture.format == Format::Vcd;

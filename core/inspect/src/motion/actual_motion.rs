@@ -117,7 +117,7 @@ impl<'a> Pulses<'a> {
         }
     }
 
-    /// Whether the steps have an acceleration somewhere: not those of ticks, whose speed is stepwise.
+    /// Whether the steps have an acceleration somewhere. Steps of ticks have none, because their speed is stepwise.
     pub fn have_acceleration(&self) -> bool {
         let is_known = |index| step_acceleration::of(self.steps, index, self.hz()).is_some();
         !matches!(self.source, Source::Ticks(..)) && (0..self.steps.len()).any(is_known)

@@ -27,7 +27,7 @@ pub struct Fit {
     /// Steps per unit; above 0.
     pub steps_per_unit: f64,
     pub offset_steps: f64,
-    /// Steps of each pair less those of the line.
+    /// Steps of each pair minus the line's value.
     pub residuals: Vec<f64>,
 }
 

@@ -13,7 +13,7 @@ use serde::Serialize;
 use stepscope_peripheral::protocol::{FrameOutcome, Kind, Reason, Reply};
 use stepscope_peripheral::wire::cobs::CobsDecoder;
 use stepscope_peripheral::wire::frame::{
-    ACK, CHECK, CRC_LEN, DELIMITER, Frame, NAK, POSITION_LEN, STATUS_LEN, Ticks,
+    ACK, CRC, CRC_LEN, DELIMITER, Frame, NAK, POSITION_LEN, STATUS_LEN, Ticks,
 };
 use stepscope_peripheral::wire::packet::{ALL, ChannelCommand};
 use stepscope_peripheral::{config::Protocol, device::Faults, signal::Positions};
@@ -29,7 +29,7 @@ pub struct Field {
     pub bits: Vec<BitGroup>,
 }
 
-/// Neighboring bits of a field with one meaning. Bit 0 is the least significant one of the first byte.
+/// Neighboring bits of a field with one meaning. Bit 0 is the least significant bit of the first byte.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BitGroup {
     pub high: u8,
@@ -209,7 +209,7 @@ impl Content {
     fn crc(&self) -> CrcCheck {
         match self.decoded.split_last_chunk::<CRC_LEN>() {
             Some((frame, sum)) if self.is_complete && frame.len() >= 2 => {
-                CrcCheck::Compared { found: u32::from_le_bytes(*sum), expected: CHECK.checksum(frame) }
+                CrcCheck::Compared { found: u32::from_le_bytes(*sum), expected: CRC.checksum(frame) }
             }
             _ => CrcCheck::Missing,
         }

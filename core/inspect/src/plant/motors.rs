@@ -1,6 +1,6 @@
 //! Listed motors and drivers, with the source of each value.
 //!
-//! No data sheet states friction: it is that of the default motor in proportion to the holding torque.
+//! No data sheet states friction: the default motor's friction is scaled by the holding torque.
 //! [`MotorSheet::typical`] lists all values that the source does not state.
 
 use crate::motion::torque::Machine;
@@ -205,7 +205,7 @@ pub const DRIVES: &[DriveSheet] = &[
         name: "Allegro A4979",
         drive: Drive { bridge_ohm: 1.0, ..CHIP },
         source: "data sheet A4979-DS: 0.5 Ω source and sink, slow, mixed or automatic decay; times and shares are programmable, \
-                 here those of the A4988",
+                 here the values of the A4988",
         typical: &["fast_decay_fraction", "off_time_us", "blanking_time_us", "diode_v"],
     },
     DriveSheet {

@@ -64,7 +64,7 @@ pub struct LoadedCapture {
     generated_pulses: Vec<(u8, PulseSource)>,
 }
 
-/// Whether rounding to cycles has lost no step: figures in ticks are then those of the records.
+/// Whether rounding to cycles has lost no step: figures in ticks then describe the records.
 fn have_same_steps(exact: &[ChannelReport], rounded: &[ChannelReport]) -> bool {
     let steps = |channel: &ChannelReport| (channel.channel, channel.figures.steps);
     exact.iter().map(steps).eq(rounded.iter().map(steps))

@@ -12,7 +12,7 @@ pub struct DataSheet {
     pub model: DriverModel,
     pub id: &'static str,
     pub name: &'static str,
-    /// The document, and values to check.
+    /// The data sheet, and the values it does not confirm.
     pub source: &'static str,
     pub rules: TimingRules,
 }
@@ -26,13 +26,13 @@ const fn times(
 
 pub const DRIVERS: [&DataSheet; 6] = [&A4988, &A4979, &DRV8825, &TMC2209, &TMC262, &TB6600_CLASS];
 
-/// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A and t_B 1 us, t_C and t_D 200 ns. No time from
-/// ENABLE to STEP; 1 ms is the wake-up from SLEEP.
+/// Allegro A4988, data sheet 4988-DS, "Logic interface timing": t_A and t_B 1 us, t_C and t_D 200 ns. No
+/// minimum time from ENABLE to STEP is specified; 1 ms is the wake-up from SLEEP.
 pub const A4988: DataSheet = DataSheet {
     model: DriverModel::A4988,
     id: "a4988",
     name: "Allegro A4988",
-    source: "data sheet 4988-DS: t_A, t_B, t_C, t_D; no time from ENABLE (1 ms from SLEEP)",
+    source: "data sheet 4988-DS: t_A, t_B, t_C, t_D; no minimum time from ENABLE to STEP is specified (1 ms from SLEEP)",
     rules: times([1000, 1000, 200, 200, 0]),
 };
 
@@ -56,23 +56,25 @@ pub const DRV8825: DataSheet = DataSheet {
 };
 
 /// Trinamic TMC2209, data sheet revision 1.09, "STEP/DIR interface": t_SH and t_SL max(t_FILTSD, t_CLK + 20 ns), t_DSU
-/// and t_DSH 20 ns. Its oscillator has at least 11.5 MHz, so 87 + 20 ns; 270 ns at 4 MHz. No time from ENN.
+/// and t_DSH 20 ns. Its oscillator has at least 11.5 MHz, so 87 + 20 ns; 270 ns at 4 MHz. No
+/// minimum time from ENN to STEP is specified.
 pub const TMC2209: DataSheet = DataSheet {
     model: DriverModel::Tmc2209,
     id: "tmc2209",
     name: "Trinamic TMC2209",
     source: "data sheet rev. 1.09: t_SH, t_SL = t_CLK + 20 ns at 11.5 MHz, the minimum of its oscillator; \
-             t_DSU, t_DSH; no time from ENN",
+             t_DSU, t_DSH; no minimum time from ENN to STEP is specified",
     rules: times([107, 107, 20, 20, 0]),
 };
 
-/// Trinamic TMC262: formula of the TMC2100 at 10 MHz, the TMC2660's minimum; **not confirmed** by its data sheet.
+/// Trinamic TMC262: TMC2100 formula, t_CLK + 20 ns, with the TMC2660's minimum clock of 10 MHz; **not confirmed** by its
+/// data sheet.
 pub const TMC262: DataSheet = DataSheet {
     model: DriverModel::Tmc262,
     id: "tmc262",
     name: "Trinamic TMC262",
-    source: "formula of the TMC2100's data sheet, t_CLK + 20 ns at 10 MHz, the minimum of the TMC2660; not \
-             confirmed by the TMC262's data sheet: check your sheet",
+    source: "TMC2100 formula, t_CLK + 20 ns, with the TMC2660's minimum clock of 10 MHz; not confirmed by the \
+             TMC262's data sheet: check your sheet",
     rules: times([120, 120, 20, 20, 0]),
 };
 

@@ -1,4 +1,4 @@
-//! The run fingerprint in a link: it shows whether a run equals that of the sender.
+//! The run fingerprint in a link: it shows whether a run equals the sender's run.
 //!
 //! ```text
 //! d=<form>.<version>.<controller>….<check>        form 1
@@ -17,7 +17,7 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 
 const FORM: u32 = 1;
 const MAX_CONTROLLERS: usize = 32;
-const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// The fingerprints of all controllers of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,7 +68,7 @@ impl RunFingerprint {
             let bytes: Vec<u8> = checkpoints.iter().flat_map(|value| value.to_be_bytes()).collect();
             text += &format!(".{digest:016x}.{records}.{}", Base64UrlUnpadded::encode_string(&bytes));
         }
-        let check = CHECK.checksum(text.as_bytes());
+        let check = CRC.checksum(text.as_bytes());
         text + &format!(".{check:08x}")
     }
 
@@ -94,14 +94,14 @@ impl RunFingerprint {
             _ => return Err(RunFingerprintError::Damaged),
         }
         let (checked, check) = text.rsplit_once('.').ok_or(RunFingerprintError::Damaged)?;
-        if check != format!("{:08x}", CHECK.checksum(checked.as_bytes())) {
+        if check != format!("{:08x}", CRC.checksum(checked.as_bytes())) {
             return Err(RunFingerprintError::Damaged);
         }
         parse_checked(checked).ok_or(RunFingerprintError::Damaged)
     }
 }
 
-/// Whether a run equals that of a fingerprint; otherwise the first controller that differs.
+/// Whether a run matches a fingerprint; otherwise the first controller that differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verification {
     Same { edges: u64 },
@@ -200,7 +200,7 @@ mod tests {
             "1.0_1_0.0123456789abcdef.99999999999999999999.AAAAAA",
             "1.0_1_0.0123456789abcdef.18446744073709551615.AAAAAA",
         ] {
-            let text = format!("{text}.{:08x}", CHECK.checksum(text.as_bytes()));
+            let text = format!("{text}.{:08x}", CRC.checksum(text.as_bytes()));
             assert_eq!(RunFingerprint::parse(&text), Err(RunFingerprintError::Damaged), "{text}");
         }
     }

@@ -77,7 +77,7 @@ impl Rates {
 
 type Change = Option<(String, Scenario)>;
 
-/// Shorter slots: one per step at the maximum rate; all controllers keep the same tick.
+/// Shortens the slots of all controllers to one step at the maximum rate, so that equal ticks stay equal.
 fn shorter_slots(scenario: &Scenario, slow: &[Rates]) -> Change {
     let needed = slow.iter().map(|rates| rates.needed).fold(1.0, libm::fmax);
     let period = libm::floor(f64::from(scenario.clock_hz) / needed) as u32;
@@ -109,23 +109,22 @@ fn longer_times(scenario: &Scenario, slow: &[Rates]) -> Change {
                 if factor <= 1.0 {
                     continue;
                 }
-                let time_s = match planned {
-                    Move::Cosine(cosine) => &mut cosine.duration_s,
-                    Move::Ramps(ramps) => &mut ramps.duration_s,
-                    Move::Sine(sine) => &mut sine.period_s,
-                    Move::SineSegments(sine) => &mut sine.period_s,
+                let (name, time_s) = match planned {
+                    Move::Cosine(cosine) => ("duration", &mut cosine.duration_s),
+                    Move::Ramps(ramps) => ("duration", &mut ramps.duration_s),
+                    Move::Sine(sine) => ("period", &mut sine.period_s),
+                    Move::SineSegments(sine) => ("period", &mut sine.period_s),
                     _ => return None,
                 };
                 *time_s = libm::ceil(*time_s * factor / TIME_STEP_S) * TIME_STEP_S;
-                texts.push(format!("{} s", shortest(*time_s)));
+                texts.push(format!("the {name} to {} s", shortest(*time_s)));
             }
         }
     }
-    let times = texts.join(", ");
-    (!texts.is_empty()).then(|| (format!("give the move more time: {times}"), changed))
+    (!texts.is_empty()).then(|| (format!("set {}", texts.join(", ")), changed))
 }
 
-/// Formats a multiple without the product's last bits.
+/// Formats with up to four decimals, which hides rounding errors.
 fn shortest(time_s: f64) -> String {
     format!("{time_s:.4}").trim_end_matches('0').trim_end_matches('.').to_string()
 }
@@ -152,7 +151,7 @@ mod tests {
         let slow = r#"{"bus":{"step_period_cycles":2000,"slots":10}}"#;
         let expected = [
             "set the slot to 1000 cycles",
-            "give the move more time: 0.8 s",
+            "set the duration to 0.8 s",
             "use a step table (timer interrupt)",
         ];
         assert_eq!(offers(slow), expected);
@@ -164,17 +163,25 @@ mod tests {
     }
 
     #[test]
+    fn the_times_of_all_fast_moves_are_named() {
+        let fast = r#"{"bus":{"step_period_cycles":16000},"source":{"motion":{"axes":[
+            {"moves":[{"cosine":{"distance":{"steps":400},"duration_s":0.4}},{"sine":{"amplitude":{"steps":200}}}]}]}}}"#;
+        let period = offers(fast).into_iter().find(|offer| offer.contains("the period to"));
+        assert!(period.is_some_and(|offer| offer.starts_with("set the duration to ")), "{:?}", offers(fast));
+    }
+
+    #[test]
     fn insufficient_changes_are_not_offered() {
         // A pulse of 1500 cycles does not fit into a slot of 1000.
         let long_pulse = r#"{"bus":{"step_period_cycles":2000,"slots":10,"pulse_width_cycles":1500}}"#;
-        assert_eq!(offers(long_pulse), ["give the move more time: 0.8 s"]);
+        assert_eq!(offers(long_pulse), ["set the duration to 0.8 s"]);
         // Segments need a single controller.
         let two = r#"{"bus":{"step_period_cycles":2000,"slots":10},"line":{"address":1},
             "controllers":[{"address":2,"bus":{"step_period_cycles":2000,"slots":10},"axes":[]}],
             "source":{"motion":{"axes":[{"moves":[{"cosine":{}}]}]}}}"#;
         assert_eq!(
             offers(two),
-            ["set the slot to 1000 cycles on all controllers", "give the move more time: 0.8 s"]
+            ["set the slot to 1000 cycles on all controllers", "set the duration to 0.8 s"]
         );
     }
 

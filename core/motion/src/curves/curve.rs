@@ -18,7 +18,7 @@ pub trait Curve {
     /// Speed at `t` in steps/s: at the start the first of the move, at the end the last.
     fn speed(&self, t: f64) -> f64;
 
-    /// Acceleration at `t` in steps/s^2, without the jumps of the speed; by default that of constant rates.
+    /// Acceleration at `t` in steps/s^2, without the jumps of the speed; 0 by default, for constant rates.
     fn acceleration(&self, _t: f64) -> f64 {
         0.0
     }
@@ -27,7 +27,7 @@ pub trait Curve {
     fn peaks(&self) -> Peaks;
 
     /// Rising times in s at which the formula changes: between them position, speed and acceleration are smooth and
-    /// monotonic. The end of the move may be the last one. An oscillation has only those of its first period.
+    /// monotonic. The end of the move may be the last one. An oscillation has only the times in its first period.
     fn breakpoints_s(&self) -> Vec<f64> {
         Vec::new()
     }

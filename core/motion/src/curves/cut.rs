@@ -90,7 +90,7 @@ impl<P: MoveCurve> Curve for Cut<P> {
         if t >= self.at_s { self.end.acceleration } else { self.base.acceleration(t) }
     }
 
-    /// Jumps and jerk are those of the whole move.
+    /// Jumps and jerk apply to the whole move.
     fn peaks(&self) -> Peaks {
         let of = |t: f64| Peaks {
             speed: libm::fabs(self.speed(t)),

@@ -42,7 +42,7 @@ impl Mirrored {
         greater(0.0, if self.is_first_half(t) { t } else { self.duration_s - t })
     }
 
-    /// Completes positions (without sign) at which the formula changes in the first half by those of the second.
+    /// Adds the second half to the positions (without sign) at which the formula changes in the first half.
     pub(crate) fn changes(&self, first_half: &[f64]) -> Vec<f64> {
         let count = self.count();
         let before = first_half.iter().copied().filter(|position| *position < count / 2.0);

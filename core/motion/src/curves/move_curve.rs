@@ -19,6 +19,6 @@ pub trait MoveCurve: Schedule {
     /// The state just before `t`.
     fn state_before(&self, t: f64) -> State;
 
-    /// Times in s between which the formula is the same, those of the first period if it repeats.
+    /// Times in s between which the formula is the same; if it repeats, only in the first period.
     fn changes_s(&self) -> Vec<f64>;
 }

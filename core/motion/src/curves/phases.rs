@@ -1,4 +1,4 @@
-//! Curves of phases of constant jerk: ramps between two speeds, changed targets and way-points.
+//! Curves of phases of constant jerk: ramps between two speeds, changed targets and waypoints.
 //!
 //! ```text
 //! acceleration |  .--.            each phase is a cubic about its reference, which is its start or its end: the one

@@ -63,7 +63,7 @@ pub struct TimeError {
     pub end_s: f64,
     /// The same in units of the requested duration: the paper's time error.
     pub relative: f64,
-    /// Time of the last step minus that of the exact curve.
+    /// Time of the last step minus its time on the exact curve.
     pub last_step_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Way-points that several axes pass together without stopping.
+//! Waypoints that several axes pass together without stopping.
 //!
 //! ```text
 //! position |        .-o        each section between two points takes the time T_k of its slowest axis; the others

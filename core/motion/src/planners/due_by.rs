@@ -69,7 +69,7 @@ impl AxisPlan {
 }
 
 impl DueBy<'_> {
-    /// Steps due by `cycle`, which must be at least that of the previous call.
+    /// Steps due by `cycle`, which must not be less than in the previous call.
     pub fn steps(&mut self, cycle: u64) -> i64 {
         while let Some(current) = &mut self.current {
             let end = current.end;

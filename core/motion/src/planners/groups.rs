@@ -202,7 +202,7 @@ impl Planner<'_, '_> {
         self.validator.length("points", count, limits::WAY_POINTS, "points");
         let needed = count as u64 * self.members.len() as u64;
         let Some(left) = self.budget.way_points.checked_sub(needed) else {
-            let cause = exceeded(MAX_WAY_POINTS, self.budget.way_points, needed, "way-points of all axes");
+            let cause = exceeded(MAX_WAY_POINTS, self.budget.way_points, needed, "waypoints of all axes");
             self.validator.add("points", cause);
             return None;
         };

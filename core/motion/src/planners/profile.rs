@@ -38,7 +38,7 @@ pub enum Profile {
     Points(Points),
     Constant(ConstantVelocity),
     Dwell(Dwell),
-    /// Between two speeds within limits, to a new target, or through way-points.
+    /// Between two speeds within limits, to a new target, or through waypoints.
     Phases(Numeric<Phases>),
     /// Between two speeds in a given time.
     SpeedRamps(Numeric<SpeedRamps>),

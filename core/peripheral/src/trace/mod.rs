@@ -26,7 +26,7 @@ pub use text::{ParseError, parse_line, write_record};
 use crate::signal::{Levels, Record};
 use crate::units::Instant;
 
-/// Levels in cycle `at`; those of reset before the first record.
+/// Levels in cycle `at`; the levels of reset before the first record.
 pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
     let after = trace.partition_point(|record| record.cycle <= at);
     after.checked_sub(1).and_then(|index| trace.get(index)).map_or(Levels::RESET, |record| record.levels)

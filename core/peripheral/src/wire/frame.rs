@@ -27,13 +27,13 @@ use crate::wire::packet::Tick;
 use alloc::vec::Vec;
 use crc::{CRC_32_ISCSI, Crc};
 
-pub const CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+pub const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
 pub const DELIMITER: u8 = 0;
 
 /// Encodes `content` (address, kind, body) with CRC, COBS and delimiter.
 pub fn encode_frame(content: &[u8]) -> Vec<u8> {
     let mut content = content.to_vec();
-    content.extend(CHECK.checksum(&content).to_le_bytes());
+    content.extend(CRC.checksum(&content).to_le_bytes());
     let mut wire = cobs::encode_vec(&content);
     wire.push(DELIMITER);
     wire
@@ -274,7 +274,7 @@ impl Deframer {
 fn check_crc(content: &[u8]) -> Deframed<'_> {
     match content.split_last_chunk::<CRC_LEN>() {
         Some((frame, crc)) if content.len() >= MIN_DECODED => {
-            let (found, expected) = (u32::from_le_bytes(*crc), CHECK.checksum(frame));
+            let (found, expected) = (u32::from_le_bytes(*crc), CRC.checksum(frame));
             match *frame {
                 [address, kind, ref body @ ..] if found == expected => {
                     Deframed::Frame(Frame { address, kind, body })
@@ -315,9 +315,9 @@ mod tests {
 
     #[test]
     fn frames_and_replies_have_the_bytes_of_the_contract() {
-        assert_eq!(CHECK.checksum(b"123456789"), 0xe306_9283, "the published value of CRC-32/ISCSI");
+        assert_eq!(CRC.checksum(b"123456789"), 0xe306_9283, "the published value of CRC-32/ISCSI");
         let with_cobs = |content: &[u8]| {
-            let crc = CHECK.checksum(content).to_le_bytes();
+            let crc = CRC.checksum(content).to_le_bytes();
             let mut wire = cobs::encode_vec(&[content, &crc].concat());
             wire.push(0);
             wire
@@ -451,7 +451,7 @@ mod tests {
                 None => continue,
                 Some(Deframed::Frame(_)) => "frame",
                 Some(Deframed::Short) => "short",
-                Some(Deframed::BadCrc { .. }) => "check",
+                Some(Deframed::BadCrc { .. }) => "bad CRC",
                 Some(Deframed::Overlong) => "overlong",
             };
             found.push((index, name));
@@ -465,7 +465,7 @@ mod tests {
         assert_eq!(outcomes(&[1, 0]), [(1, "short")]);
         assert_eq!(outcomes(&[5, 1, 0]), [(2, "short")], "not COBS");
         assert_eq!(outcomes(&[6, 1, 2, 3, 4, 5, 0]), [(6, "short")], "five bytes");
-        assert_eq!(outcomes(&[7, 1, 2, 3, 4, 5, 6, 0]), [(7, "check")], "six bytes");
+        assert_eq!(outcomes(&[7, 1, 2, 3, 4, 5, 6, 0]), [(7, "bad CRC")], "six bytes");
     }
 
     #[test]
@@ -473,7 +473,7 @@ mod tests {
         // A code of 2 stands for one byte and a zero; the zero counts only if the frame goes on.
         let mut implied: Vec<u8> = [2, 1].repeat(300);
         implied.extend([0]);
-        assert_eq!(outcomes(&implied), [(600, "check")], "599 bytes, without the last zero");
+        assert_eq!(outcomes(&implied), [(600, "bad CRC")], "599 bytes, without the last zero");
         let mut implied: Vec<u8> = [2, 1].repeat(300);
         implied.extend([2, 1, 0, 2, 1, 0]);
         assert_eq!(

@@ -28,7 +28,7 @@ word_enums! {
     pub enum DriverModel {
         /// Allegro, data sheet 4988-DS
         A4988 = "a4988" => label("A4988");
-        /// Allegro; only STEP high is confirmed, the other times are those of the A4988
+        /// Allegro; only STEP high is confirmed, the other times are the A4988's
         A4979 = "a4979" => label("A4979");
         /// Texas Instruments, data sheet SLVSA73
         Drv8825 = "drv8825" => label("DRV8825");

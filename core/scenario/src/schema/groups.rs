@@ -1,4 +1,4 @@
-//! Groups of moves that start and end together, and input shapers; motion owns the types.
+//! Groups of moves that start and end together, and input shapers; stepscope-motion defines the types.
 
 use crate::schema::rows::{fields, kinds};
 use crate::schema::{Field, OWN, label};
@@ -17,7 +17,7 @@ kinds! {
         /// All axes follow a straight line from rest to rest.
         Line(LineGroup) = "line" => label("Straight line").from(OWN),
         /// All axes pass points without stopping.
-        WayPoints(WayPointGroup) = "way_points" => label("Way-points").from(OWN),
+        WayPoints(WayPointGroup) = "way_points" => label("Waypoints").from(OWN),
     }
     /// An input shaper. Give all axes of a group the same one.
     InputShaper {
@@ -27,7 +27,7 @@ kinds! {
         Mzv(ShaperSettings) = "mzv" => label("MZV"),
         /// Zero vibration and derivative: three impulses, one period (Singer and Seering 1990). Damping ratio up to 0.99.
         Zvd(ShaperSettings) = "zvd" => label("ZVD"),
-        /// Extra insensitive: 5 % remain at the frequency itself (Singhose, Seering, Singer 1994). Damping ratio up to 0.4.
+        /// Extra insensitive: 5 % of the vibration remains at the frequency itself (Singhose, Seering, Singer 1994). Damping ratio up to 0.4.
         Ei(ShaperSettings) = "ei" => label("EI"),
         /// Two humps: one and a half periods (Singhose et al. 1997). Damping ratio up to 0.3.
         TwoHumpEi(ShaperSettings) = "two_hump_ei" => label("2-hump EI"),
@@ -41,8 +41,8 @@ const DISTANCE: Field = label("Distance").unit("steps").number(limits::STEPS);
 fields! {
     /// Each axis runs its own curve more slowly, so that all end together. A move that follows a table cannot be in a group.
     TimeGroup {
-        /// Duration of all moves, at least that of the slowest.
-        duration_s: Option<f64> => label("Duration").unit("s").number(limits::DURATION_S).null_means("that of the slowest move"),
+        /// Duration of all moves, at least the duration of the slowest.
+        duration_s: Option<f64> => label("Duration").unit("s").number(limits::DURATION_S).null_means("duration of the slowest move"),
         /// At most one per axis; other axes stand still.
         moves: Vec<GroupMove> => label("Moves").range_text("1 to the number of axes"),
     }
@@ -50,7 +50,7 @@ fields! {
     GroupMove {
         /// Index of the axis, from 0 on.
         axis: u8 => label("Axis").range_text("0 to the number of axes - 1"),
-        /// Any kind of move but a new target.
+        /// Any kind of move except `retarget`.
         r#move: Move => label("Move"),
     }
     /// A straight line within the `limits` of all axes.

@@ -29,7 +29,7 @@ fields! {
         /// Holding torque, both phases at the rated current.
         holding_torque_mn_m: f64 => label("Holding torque").named("holding_torque_mN_m").unit("mN·m")
             .number(limits::HOLDING_TORQUE_MN_M)
-            .term("Holding torque", "Torque with both phases at the rated current. One phase at its peak has 1/√2 of it. The back-EMF follows from it.")
+            .term("Holding torque", "Torque with both phases at the rated current. One phase alone at the rated current has 1/√2 of this torque. The back-EMF constant is derived from the holding torque.")
             .from(SONG),
         /// Inertia of the rotor.
         rotor_inertia_g_cm2: f64 => label("Rotor inertia").unit("g·cm²").number(limits::INERTIA_G_CM2)

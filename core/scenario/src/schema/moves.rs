@@ -23,7 +23,7 @@ fields! {
             .null_means("torque is not checked")
             .term("Motor", "Motor data for the torque-speed curve: a two-phase hybrid motor on a driver that regulates the current. It does not affect the run. A move that needs more torque than the motor has gets a warning; Study > Torque shows both. The default is the motor of Song, Han, Lu 2021.")
             .from(SONG),
-        /// Limits for lines, way-points and new targets, and the start-stop speed.
+        /// Limits for lines, waypoints and new targets, and the start-stop speed.
         limits: AxisLimits => label("Limits").only_if_set(),
         /// Shapes all moves of the axis so that they do not excite a vibration.
         input_shaper: Option<InputShaper> => label("Input shaper")
@@ -324,7 +324,7 @@ fields! {
         target: Target => label("Target"),
         /// How the acceleration changes.
         profile: LimitedProfile => label("Profile")
-            .term("Profile", "Jerk-limited: the acceleration changes gradually. Trapezoid: the acceleration jumps, so the move is shorter."),
+            .term("Profile", "Jerk-limited: the acceleration changes gradually. Trapezoid: the acceleration jumps, so the move takes less time."),
         /// Maximum speed.
         max_speed: Option<Speed> => LIMIT_SPEED.null_means("the axis' `limits`"),
         /// Limit while the speed rises.
@@ -343,7 +343,7 @@ fields! {
     }
     /// The fastest stop, wherever it ends. It has no fields.
     Stop {}
-    /// Limits of the axis, for moves that have none of their own.
+    /// Limits of the axis, for moves without limits.
     AxisLimits {
         /// Maximum speed.
         max_speed: Speed => LIMIT_SPEED,
@@ -358,7 +358,7 @@ fields! {
             .unit("steps/s")
             .number(limits::EDGE_SPEED_STEPS_S)
             .null_means("not checked")
-            .term("Start-stop speed", "A motor can start and stop at once up to this rate. A larger jump of the speed is refused."),
+            .term("Start-stop speed", "A motor can start and stop without a ramp up to this rate. A larger jump of the speed is refused."),
     }
     /// Both columns are relative to the first point. Times rise by at least 1 ns; positions are within 10^9 steps.
     /// `"straight"` is the polyline itself, whose speed jumps at each point. `"smooth"` uses cubics (Steffen 1990) from

@@ -60,7 +60,7 @@ settings! {
         pub loops: u16 = 1 => label("Loops").whole(whole(&limits::LOOPS)).from(ZHANG),
         /// The program: groups in order.
         pub groups: Vec<ProgramGroup> = vec![ProgramGroup::Move(MoveGroup::default())] => label("Program").length(length(&limits::GROUPS), "groups")
-            .term("Group", "A step of the program: a move by a length with speed, direction, acceleration and delay (Zhang 2012), or one of the additional kinds.")
+            .term("Group", "One entry of the program: a move with length, speed, direction, acceleration and delay (Zhang 2012), or another kind, such as a wait or a repeat.")
             .from(ZHANG),
         /// Moves by button.
         pub jog: Jog = Jog::default() => label("Jog"),
@@ -184,7 +184,7 @@ words! {
 }
 
 const LENGTH: Field = label("Length").unit("digits")
-    .term("Length", "Digits of the display without the decimal point: with one decimal 305 is 30.5 units. Positions are rounded to steps from the start of the program, so errors do not add up over loops.")
+    .term("Length", "Digits of the display without the decimal point: with one decimal 305 is 30.5 units. Each position is computed from the start of the program and then rounded to steps, so errors do not add up.")
     .from(ZHANG);
 const POSITION_OF_GROUP: Field = label("Position").unit("digits").from(ZHANG);
 const SPEED: Field = speed("Speed");

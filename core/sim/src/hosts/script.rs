@@ -31,7 +31,7 @@ pub fn scripted(mut scenario: Scenario, experiment: &Experiment, run: &Run) -> S
     replayed(scenario, LineScript { sends })
 }
 
-/// A scenario with a script as its source, without noise, whose effect is in the bytes.
+/// Replaces the source with the script and clears the noise, because the bytes already contain its effect.
 pub fn replayed(mut scenario: Scenario, script: LineScript) -> Scenario {
     scenario.source = Source::Line(script);
     scenario.line.noise = Noise::default();

@@ -249,7 +249,8 @@ impl Session {
     }
 
     /// Enters a change at the panel of a stand-alone controller after [`Self::now`] and returns its cycle: the next one in which
-    /// that input has no change yet. It cancels a later level of that input. Errors: those of a script, and a session with a line.
+    /// that input has no change yet. It cancels a later level of that input. Errors: a change that a script may not have, or a
+    /// session with a line.
     pub fn enter(&mut self, controller: usize, change: Change) -> Result<Instant, NotEntered> {
         if self.full_recording.is_none() && !self.presses.has_room() {
             self.end_recording();

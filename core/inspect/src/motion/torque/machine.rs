@@ -62,7 +62,7 @@ impl Machine {
         }
     }
 
-    /// The motor of the channel's axis, otherwise that of the scenario's plant.
+    /// The motor of the channel's axis, otherwise the motor of the scenario's plant.
     pub fn of_channel(scenario: &Scenario, controller: usize, channel: usize) -> Option<Self> {
         let axis = axes_of(scenario, controller).get(channel);
         if let Some(machine) = axis.and_then(Self::of) {

@@ -76,7 +76,7 @@ fn the_bits_of_commands_kinds_and_faults_are_explained() {
 fn commands_of_a_frame_have_their_bytes_on_the_line() {
     let wire = emit(0, 1, &Ticks::emit(7, 2, &[0x81, 0, 0, 3]));
     let meaning = read(Protocol::Framed, false, &wire, FRAME);
-    let check = u32::from_le_bytes(CHECK.checksum(&[0, 1, 7, 2, 0x81, 0, 0, 3]).to_le_bytes());
+    let check = u32::from_le_bytes(CRC.checksum(&[0, 1, 7, 2, 0x81, 0, 0, 3]).to_le_bytes());
     let lines = lines_of(&meaning);
     assert_eq!(
         lines[..9],

@@ -24,7 +24,7 @@ const AGAIN_WITHIN: usize = 1;
 const BLOCK: usize = 64;
 /// Blocks in which a start is compared with other starts.
 const TRIAL: usize = 512;
-/// Cost of an unmatched pair: above that of a step on time.
+/// Cost of an unmatched pair: above the cost of a step on time.
 const UNMATCHED: f64 = 0.3;
 
 /// The start of a run, linked to the run before. Hypotheses share their common runs.

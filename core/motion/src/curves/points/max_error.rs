@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! of times       below 64 u of the last one, as in every planner
-//! of positions   below 16 u of the largest; divided by the speed v it is one of the time, and v*x >= y/2
+//! of positions   below 16 u of the largest; divided by the speed v it is an error of time, and v*x >= y/2
 //! ```
 //!
 //! x is the time from the nearer end, y the travel. In a smooth curve both errors are multiplied by 1 + h/h0 + h/h1, because

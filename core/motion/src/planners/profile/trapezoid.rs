@@ -95,7 +95,7 @@ struct Numbers {
     acceleration: f64,
 }
 
-/// Checks the numbers; those of the table only for that method.
+/// Checks the numbers; the table's numbers only for that method.
 fn check(quantities: &mut Quantities<'_>, given: &moves::Trapezoid) -> Option<Numbers> {
     // The table's first rate must round to one pulse per second; the exact curve may start from rest.
     let start_range = match given.method {

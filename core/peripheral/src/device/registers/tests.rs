@@ -17,7 +17,8 @@ use map::{
     table::{Access, Register, Reset},
 };
 
-/// A tick of 4 slots of 20 cycles, pulses of 5 cycles 3 after their slot, 2 places, 100 cycles of self-test.
+/// Ticks of 4 slots of 20 cycles; pulses of 5 cycles, 3 cycles after the start of their slot; a queue of 2 ticks; a self-test
+/// of 100 cycles.
 const BUS: Bus = Bus {
     channels: 2,
     slots: 4,
@@ -194,7 +195,7 @@ fn a_push_reports_errors_in_the_order_of_the_data_sheet() {
     assert_eq!((bench.push(0x04), bench.read(faults)), (CODE_QUEUE_FULL, 0x30));
     assert_eq!(bench.status(STATE), STATE_MOVING);
     bench.run_to(101);
-    assert_eq!(bench.status(FREE), 1, "the first tick output the queue at its start");
+    assert_eq!(bench.status(FREE), 1, "the first tick leaves the queue at its start");
     bench.run_to(101 + 2 * 80 - 1);
     assert_eq!((bench.status(MOVING), bench.read(map::ticks_done::OFFSET)), (1, 1));
     bench.run_to(101 + 2 * 80);
@@ -428,7 +429,7 @@ fn a_stopped_controller_drops_raw_packets_without_a_fault() {
 }
 
 #[test]
-fn finish_does_not_set_a_time_before_a_write() {
+fn finish_does_not_move_time_back_before_a_write() {
     let mut bench = Bench::ready();
     bench.push(0x04);
     bench.device.run(true, Instant::NEVER, &mut bench.output);

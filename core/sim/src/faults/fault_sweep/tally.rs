@@ -58,7 +58,7 @@ tally! {
     duplicated,
     /// Lost ticks, of those that the host counts as done; on a raw line, of all.
     missing,
-    /// Steps by which wrong ticks differ, and those of duplicated ticks.
+    /// Steps by which wrong ticks differ, plus the steps of duplicated ticks.
     wrong_steps,
     missing_steps,
     /// Distance of the positions from the sums of the ticks, in steps over all channels.

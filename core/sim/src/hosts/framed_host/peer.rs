@@ -263,7 +263,7 @@ impl Peer {
         }
     }
 
-    /// Commands of the next ticks; for 0 ticks those of the opening tick.
+    /// Commands of the next ticks; for 0 ticks the commands of the opening tick.
     pub(super) fn commands(&self, ticks: u32) -> Vec<u8> {
         let channels = usize::from(self.job.channels);
         let commands = &self.job.commands;

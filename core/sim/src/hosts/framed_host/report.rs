@@ -174,7 +174,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// The status line during a conversation; ticks are those of all jobs together.
+/// The status line during a conversation; ticks are the total of all jobs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HostStatus {
     pub progress: Vec<Progress>,

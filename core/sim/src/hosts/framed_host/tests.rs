@@ -17,7 +17,7 @@ use stepscope_scenario::Line as LineSettings;
 const CLOCK_HZ: u32 = 1100;
 const BAUD: u32 = 100;
 /// Ticks of two channels; the last one has no steps.
-const ORDERS: &[u8] = &[0x81, 2, 0x83, 4, 0x82, 1, 0x80, 0];
+const COMMANDS: &[u8] = &[0x81, 2, 0x83, 4, 0x82, 1, 0x80, 0];
 
 /// The ticks that began.
 #[derive(Default)]
@@ -43,7 +43,8 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
     let bus = Bus { channels: 2, slots: 4, step_period_cycles: 100, self_test_cycles: 5, ..Bus::default() };
     let line = LineSettings { baud: BAUD, protocol: Protocol::Framed, ..LineSettings::default() };
     let config = Config::new(CLOCK_HZ, &bus, &line.serial()).expect("it holds");
-    let job = Job { address: 0, channels: 2, tick: config.tick(), queue_depth: 16, commands: ORDERS.into() };
+    let job =
+        Job { address: 0, channels: 2, tick: config.tick(), queue_depth: 16, commands: COMMANDS.into() };
     let settings = Settings { ticks_per_frame: 2, ..Settings::default() };
     let mut host =
         FramedHost::new(alloc::vec![job], &settings, (CLOCK_HZ, BAUD, config.bit()), Instant(6), None);
@@ -80,14 +81,14 @@ fn run(mut spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> (Vec<u8>, Progre
 /// Checks that each tick was executed once, and that the host has confirmed it.
 fn check(what: &str, spoil: impl FnMut(usize, &[u8]) -> CorruptedSend) -> Counts {
     let (executed, progress, counts, _) = run(spoil);
-    assert_eq!((executed.as_slice(), progress), (ORDERS, Progress::Done), "{what}");
+    assert_eq!((executed.as_slice(), progress), (COMMANDS, Progress::Done), "{what}");
     counts
 }
 
 /// The frames of a run without faults: STATUS, POSITIONS, TICKS, TICKS, STATUS, POSITIONS.
 fn frames() -> Vec<Vec<u8>> {
     let (executed, progress, counts, frames) = run(|_, bytes| (bytes.to_vec(), false));
-    assert_eq!((executed.as_slice(), progress), (ORDERS, Progress::Done));
+    assert_eq!((executed.as_slice(), progress), (COMMANDS, Progress::Done));
     assert_eq!((counts.frames, counts.repeated, counts.replies, frames.len()), (6, 0, 6, 6));
     frames
 }
@@ -182,7 +183,7 @@ fn two_faults_in_a_row_lose_no_step() {
 fn a_late_reply_to_the_previous_frame_acknowledges_nothing() {
     for (expected_seq, acknowledged) in [(7, 0), (8, 2)] {
         let job =
-            Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: ORDERS.into() };
+            Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: COMMANDS.into() };
         let mut host = Conversation::new(alloc::vec![job], &Settings::default(), Cycles(11), Instant(1));
         (host.peers[0].progress, host.peers[0].seq, host.peers[0].free) = (Progress::Filling, 7, 2);
         let _ = host.poll(Instant(1)).expect("TICKS are due");
@@ -204,7 +205,7 @@ fn a_controller_without_replies_executes_what_it_receives() {
         let (executed, progress, counts, _) = run(|index, bytes| (heard(index, bytes), false));
         assert_eq!(progress, Progress::GivenUp(GivenUp::NoReply));
         assert_eq!((counts.frames, counts.repeated), (silent_from as u64 + 10, 9));
-        assert_eq!(executed, ORDERS[..4 * silent_from.saturating_sub(2).min(2)], "{silent_from}");
+        assert_eq!(executed, COMMANDS[..4 * silent_from.saturating_sub(2).min(2)], "{silent_from}");
     }
 }
 
@@ -232,7 +233,7 @@ fn converse_with(
     opening_tick: bool,
     mut falsify: impl FnMut(&mut Conversation, usize, Kind, &mut Reported) -> Option<Result<Kind, Reason>>,
 ) -> (Vec<Kind>, Progress, Known) {
-    let job = Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: ORDERS.into() };
+    let job = Job { address: 0, channels: 2, tick: Cycles(400), queue_depth: 16, commands: COMMANDS.into() };
     let settings = Settings { ticks_per_frame: 2, ..Settings::default() };
     let settings = if opening_tick { settings } else { Settings::default() };
     let mut host = Conversation::new(alloc::vec![job], &settings, Cycles(11), Instant(6));
