@@ -6,15 +6,12 @@ use crate::pointer::{self, Buffer};
 use crate::run::{Edge, Summary};
 use crate::scenario::{ScenarioHandle, StoredScenario};
 use crate::status::{BUSY, Failure, ORDER, PANIC, RANGE, Status, checked};
-use std::collections::VecDeque;
 use std::ffi::c_void;
 use std::ptr;
 use std::sync::{Mutex, TryLockError};
-use stepscope_core::peripheral::signal::{Event, Sink};
-use stepscope_core::peripheral::wire::{BitTimes, Schedule, Sender};
-use stepscope_core::prelude::{Device, Digest, Instant, Levels, Record};
-use stepscope_core::scenario::END_OF_TIME;
-use stepscope_core::sim::ValidatedScenario;
+use stepscope_core::peripheral::signal::Sink;
+use stepscope_core::prelude::Record;
+use stepscope_core::sim::{ClockedDevice, ClockedDeviceError, ValidatedScenario};
 
 /// A controller alone, clocked by its caller. One call at a time: a second one, also from its own callback, is
 /// STEPSCOPE_BUSY.
@@ -24,9 +21,6 @@ pub struct DeviceHandle {
 
 /// Receives each edge in the cycle in which it happens, in the thread of the call. It must return: no longjmp, no exception.
 pub type OnEdge = Option<unsafe extern "C" fn(context: *mut c_void, edge: Edge)>;
-
-/// Replies that wait to be received; then the oldest is dropped.
-const MAX_REPLIES: usize = 1024;
 
 struct StoredDevice(Mutex<DeviceState>);
 
@@ -39,24 +33,13 @@ impl handle::Object for StoredDevice {
     }
 }
 
-struct DeviceState {
-    device: Device,
-    output: Output,
-    clock_hz: u32,
-    /// The host's bit rate.
-    baud: u32,
-}
+type DeviceState = ClockedDevice<Watcher>;
 
-/// What the device has sent: edges to the digest and the callback, replies to a queue.
+/// Passes edges to the caller's callback.
 #[derive(Default)]
-struct Output {
-    digest: Digest,
+struct Watcher {
     on_edge: OnEdge,
     context: Context,
-    replies: VecDeque<Reply>,
-    /// A call waits for a reply, and the device pauses with the rise of DE.
-    awaits_reply: bool,
-    de: bool,
 }
 
 struct Context(*mut c_void);
@@ -71,135 +54,40 @@ impl Default for Context {
 // states.
 unsafe impl Send for Context {}
 
-struct Reply {
-    /// Cycle of DE's fall.
-    end: Instant,
-    bytes: Vec<u8>,
-}
-
-impl Sink for Output {
+impl Sink for Watcher {
     fn record(&mut self, record: Record) {
-        self.digest.record(record);
-        self.de = record.levels.has(Levels::DE);
         if let Some(on_edge) = self.on_edge {
             // SAFETY: the header asks for a function that can be called with the context until another one is set.
             unsafe { on_edge(self.context.0, Edge::new(record)) };
         }
     }
-
-    fn event(&mut self, _: Instant, event: Event) {
-        if let Event::Reply { end, reply, positions, .. } = event {
-            if self.replies.len() == MAX_REPLIES {
-                self.replies.pop_front();
-            }
-            self.replies.push_back(Reply { end, bytes: reply.emit(positions.as_ref()) });
-        }
-    }
-
-    fn is_paused(&self) -> bool {
-        self.awaits_reply && self.de
-    }
 }
 
-fn out_of_range(name: &str, given: u64, min: u64, max: u64) -> Failure {
-    Failure::new(RANGE, name, format!("{given} is out of range; use {min} to {max}"))
+fn refused(error: ClockedDeviceError) -> Failure {
+    let status = match error {
+        ClockedDeviceError::NotRun => ORDER,
+        ClockedDeviceError::Range { .. } => RANGE,
+    };
+    Failure::new(status, error.name(), error.to_string())
 }
 
-impl DeviceState {
-    fn new(scenario: &ValidatedScenario, controller: u32) -> Result<Self, Failure> {
-        let experiment = scenario.experiment().map_err(Failure::of)?;
-        let config = experiment.configs().nth(controller as usize).ok_or_else(|| {
-            out_of_range("controller", controller.into(), 0, experiment.controllers() as u64 - 1)
-        })?;
-        let (clock_hz, baud) = (config.clock_hz(), experiment.baud());
-        let device = Device::new(config);
-        Ok(Self { device, output: Output::default(), clock_hz, baud })
-    }
+fn before_reset(scenario: &ValidatedScenario, controller: u32) -> Result<DeviceState, Failure> {
+    let experiment = scenario.experiment().map_err(Failure::of)?;
+    ClockedDevice::new(experiment, controller as usize, Watcher::default()).map_err(refused)
+}
 
-    /// Runs up to cycle `until`, which has been checked.
-    fn run(&mut self, line: bool, until: Instant) {
-        self.device.run(line, until, &mut self.output);
-    }
-
-    fn clock(&mut self, line: bool) -> Result<u64, Failure> {
-        self.check_until("cycle", self.device.now().0.saturating_add(1))?;
-        Ok(self.device.clock(line, &mut self.output).0)
-    }
-
-    /// Device time has an end, far behind that of any run.
-    fn check_until(&self, name: &str, until: u64) -> Result<Instant, Failure> {
-        let now = self.device.now().0;
-        if (now..=END_OF_TIME).contains(&until) {
-            return Ok(Instant(until));
-        }
-        Err(out_of_range(name, until, now, END_OF_TIME))
-    }
-
-    fn advance(&mut self, cycles: u64) -> Result<(), Failure> {
-        let until = self.check_until("cycles", self.device.now().0.saturating_add(cycles))?;
-        match self.device.cycles_until_event() {
-            Some(max) if cycles > max.0 => Err(out_of_range("cycles", cycles, 0, max.0)),
-            _ => {
-                self.device.advance(until - self.device.now());
-                Ok(())
-            }
-        }
-    }
-
-    fn send(&mut self, bytes: &[u8]) -> Result<(), Failure> {
-        if bytes.is_empty() {
-            return Ok(());
-        }
-        let start = self.device.now().max(Instant(1));
-        let length = BitTimes::new(self.clock_hz, self.baud).bytes(bytes.len() as u64);
-        let end = self.check_until("length", start.0.saturating_add(length.0))?;
-        let mut schedule = Schedule::default();
-        schedule.push(start, bytes);
-        let mut sender = Sender::new(schedule.into(), self.clock_hz, self.baud);
-        while sender.next_edge() != Instant::NEVER {
-            self.run(sender.level(), sender.next_edge());
-            sender.pass();
-        }
-        self.run(sender.level(), end);
-        Ok(())
-    }
-
-    /// Waits for the oldest reply and for its last stop bit; false if DE does not rise in time.
-    fn await_reply(&mut self, timeout: u64) -> Result<bool, Failure> {
-        let now = self.device.now();
-        // Forever: until nothing can change any more, but not up to the end of time.
-        let until = match timeout {
-            u64::MAX => Instant::NEVER,
-            _ => self.check_until("timeout_cycles", now.0.saturating_add(timeout))?,
-        };
-        if self.output.replies.front().is_some_and(|reply| reply.end < now) {
-            return Ok(true); // it was sent before this call
-        }
-        if !self.output.de {
-            self.output.awaits_reply = true;
-            self.device.run(true, until, &mut self.output);
-            self.output.awaits_reply = false;
-        }
-        let Some(end) = self.output.replies.front().filter(|_| self.output.de).map(|reply| reply.end) else {
-            return Ok(false);
-        };
-        self.run(true, end.next());
-        Ok(true)
-    }
-
-    fn summary(&self) -> Summary {
-        Summary {
-            size: 0,
-            controllers: 1,
-            clock_hz: self.clock_hz,
-            channels: self.device.positions().len() as u32,
-            cycles: self.device.now().0,
-            records: self.output.digest.records(),
-            digest: self.output.digest.value(),
-            ticks_done: self.device.ticks_done(),
-            faults: self.device.faults().bits().into(),
-            positions: Summary::all_positions(self.device.positions()),
-        }
+fn summary(device: &DeviceState) -> Summary {
+    Summary {
+        size: 0,
+        controllers: 1,
+        clock_hz: device.clock_hz(),
+        channels: device.positions().len() as u32,
+        cycles: device.cycles(),
+        records: device.digest().records(),
+        digest: device.digest().value(),
+        ticks_done: device.ticks_done(),
+        faults: device.faults().bits().into(),
+        positions: Summary::all_positions(device.positions()),
     }
 }
 
@@ -232,9 +120,9 @@ pub unsafe extern "C" fn stepscope_device_new(
         guarded(error, || {
             pointer::put("out", out, ptr::null_mut())?;
             let state = if scenario.is_null() {
-                DeviceState::new(&ValidatedScenario::from_json("{}"), controller)?
+                before_reset(&ValidatedScenario::from_json("{}"), controller)?
             } else {
-                DeviceState::new(&handle::get::<StoredScenario>(scenario)?.0, controller)?
+                before_reset(&handle::get::<StoredScenario>(scenario)?.0, controller)?
             };
             pointer::put("out", out, handle::add(StoredDevice(Mutex::new(state))))
         })
@@ -252,7 +140,7 @@ pub unsafe extern "C" fn stepscope_device_clock(
     levels: *mut u64,
 ) -> Status {
     checked(|| {
-        let found = with(device, |state| state.clock(line))?;
+        let found = with(device, |state| state.clock(line).map_err(refused))?.0;
         if levels.is_null() {
             return Ok(());
         }
@@ -270,7 +158,7 @@ pub unsafe extern "C" fn stepscope_device_cycles_until_event(
     cycles: *mut u64,
 ) -> Status {
     checked(|| {
-        let until = with(device, |state| Ok(state.device.cycles_until_event()))?;
+        let until = with(device, |state| Ok(state.cycles_until_event()))?;
         // SAFETY: the header asks for NULL or a valid pointer.
         unsafe { pointer::put("cycles", cycles, until.map_or(u64::MAX, |cycles| cycles.0)) }
     })
@@ -281,7 +169,7 @@ pub unsafe extern "C" fn stepscope_device_cycles_until_event(
 /// Returns STEPSCOPE_RANGE (more than stepscope_device_cycles_until_event(); nothing is done), _BUSY, _NULL, _HANDLE.
 #[unsafe(no_mangle)]
 pub extern "C" fn stepscope_device_advance(device: *mut DeviceHandle, cycles: u64) -> Status {
-    checked(|| with(device, |state| state.advance(cycles)))
+    checked(|| with(device, |state| state.advance(cycles).map_err(refused)))
 }
 
 /// Runs until `cycle` is the next one, with the line at `line`; cycles without change are skipped.
@@ -289,13 +177,7 @@ pub extern "C" fn stepscope_device_advance(device: *mut DeviceHandle, cycles: u6
 /// Returns STEPSCOPE_RANGE (the cycle is past, or above 9*10^15), _BUSY, _NULL, _HANDLE.
 #[unsafe(no_mangle)]
 pub extern "C" fn stepscope_device_run_until(device: *mut DeviceHandle, cycle: u64, line: bool) -> Status {
-    checked(|| {
-        with(device, |state| {
-            let until = state.check_until("cycle", cycle)?;
-            state.run(line, until);
-            Ok(())
-        })
-    })
+    checked(|| with(device, |state| state.run_until(cycle, line).map_err(refused)))
 }
 
 /// Sends bytes to the device, back to back at the bit rate of the scenario's line, from the next cycle on (at least cycle 1).
@@ -311,7 +193,7 @@ pub unsafe extern "C" fn stepscope_device_send(
     checked(|| {
         // SAFETY: the header asks for NULL, or for as many bytes.
         let bytes = unsafe { pointer::items("bytes", bytes, length)? };
-        with(device, |state| state.send(bytes))
+        with(device, |state| state.send(bytes).map_err(refused))
     })
 }
 
@@ -333,14 +215,12 @@ pub unsafe extern "C" fn stepscope_device_receive(
         // SAFETY: the header asks for pointers that are NULL or valid, `out` for `capacity` bytes.
         let buffer = unsafe { Buffer::new(out, capacity, count)? };
         with(device, |state| {
-            if !state.await_reply(timeout_cycles)? {
-                return Ok(());
-            }
             let only_counts = buffer.only_counts();
-            let bytes = state.output.replies.front().map_or(&[][..], |reply| &reply.bytes);
+            let reply = state.await_reply(Some(timeout_cycles)).map_err(refused)?;
+            let Some(bytes) = reply else { return Ok(()) };
             buffer.fill(bytes.iter().copied())?;
             if !only_counts {
-                state.output.replies.pop_front();
+                state.take_reply();
             }
             Ok(())
         })
@@ -358,7 +238,7 @@ pub unsafe extern "C" fn stepscope_device_read(
     value: *mut u32,
 ) -> Status {
     checked(|| {
-        let found = with(device, |state| Ok(state.device.read(offset)))?;
+        let found = with(device, |state| Ok(state.read(offset)))?;
         // SAFETY: the header asks for NULL or a valid pointer.
         unsafe { pointer::put("value", value, found) }
     })
@@ -370,15 +250,7 @@ pub unsafe extern "C" fn stepscope_device_read(
 /// Returns STEPSCOPE_ORDER (the device has not run), _BUSY, _NULL, _HANDLE.
 #[unsafe(no_mangle)]
 pub extern "C" fn stepscope_device_write(device: *mut DeviceHandle, offset: u32, value: u32) -> Status {
-    checked(|| {
-        with(device, |state| {
-            if state.device.now() == Instant::RESET {
-                return Err(Failure::new(ORDER, "device", "no cycle has run; clock the device first"));
-            }
-            state.device.write(offset, value, &mut state.output);
-            Ok(())
-        })
-    })
+    checked(|| with(device, |state| state.write(offset, value).map_err(refused)))
 }
 
 /// The summary of the device so far.
@@ -387,7 +259,7 @@ pub extern "C" fn stepscope_device_write(device: *mut DeviceHandle, offset: u32,
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn stepscope_device_summary(device: *const DeviceHandle, out: *mut Summary) -> Status {
     checked(|| {
-        let summary = with(device, |state| Ok(state.summary()))?;
+        let summary = with(device, |state| Ok(summary(state)))?;
         // SAFETY: the header asks for NULL, or a struct of the size that it states.
         unsafe { pointer::put_sized("out", out, &summary) }
     })
@@ -405,7 +277,7 @@ pub unsafe extern "C" fn stepscope_device_watch(
 ) -> Status {
     checked(|| {
         with(device, |state| {
-            (state.output.on_edge, state.output.context) = (on_edge, Context(context));
+            *state.sink_mut() = Watcher { on_edge, context: Context(context) };
             Ok(())
         })
     })

@@ -2,11 +2,7 @@
 
 use crate::pointer::{self, Buffer};
 use crate::status::{Failure, RANGE, Status, checked};
-use stepscope_core::peripheral::wire::frame::{
-    DELIMITER, Deframed, Deframer, MAX_DECODED, MIN_DECODED, emit,
-};
-
-const MAX_BODY: usize = MAX_DECODED - MIN_DECODED;
+use stepscope_core::peripheral::wire::frame::{MAX_BODY, decode_frame, emit};
 
 /// Encodes a frame for the line: CRC, COBS and the closing 0x00. `length` is at most 594 bytes, and 604 bytes hold any frame.
 /// `body` may be NULL if `length` is 0. `out` NULL with capacity 0 returns only the count.
@@ -54,17 +50,12 @@ pub unsafe extern "C" fn stepscope_decode_frame(
         unsafe {
             let buffer = Buffer::new(out, capacity, count)?;
             let data = pointer::items("data", data, length)?;
-            let data = data.strip_suffix(&[DELIMITER]).unwrap_or(data);
-            let no_frame =
-                || Failure::new(RANGE, "data", "no frame; use the bytes of one, with COBS and CRC");
-            let mut deframer = Deframer::default();
-            if data.iter().any(|byte| deframer.byte(*byte).is_some()) {
-                return Err(no_frame());
-            }
-            let Some(Deframed::Frame(frame)) = deframer.byte(DELIMITER) else { return Err(no_frame()) };
-            pointer::put("address", address, frame.address)?;
-            pointer::put("kind", kind, frame.kind)?;
-            buffer.fill(frame.body.iter().copied())
+            let (frame_address, frame_kind, body) = decode_frame(data).ok_or_else(|| {
+                Failure::new(RANGE, "data", "no frame; use the bytes of one, with COBS and CRC")
+            })?;
+            pointer::put("address", address, frame_address)?;
+            pointer::put("kind", kind, frame_kind)?;
+            buffer.fill(body.iter().copied())
         }
     })
 }

@@ -106,14 +106,7 @@ pub unsafe extern "C" fn stepscope_scenario_from_preset(
     unsafe {
         made(out, error, || {
             let name = pointer::text("name", name, usize::MAX)?;
-            let preset = presets::all().find(|preset| preset.id == name).ok_or_else(|| {
-                let names: Vec<&str> = presets::all().map(|preset| preset.id).collect();
-                Failure::new(
-                    RANGE,
-                    "name",
-                    format!("unknown preset {name:?}; use one of {}", names.join(", ")),
-                )
-            })?;
+            let preset = presets::find(name).map_err(|why| Failure::new(RANGE, "name", why))?;
             Ok(preset.scenario().into())
         })
     }

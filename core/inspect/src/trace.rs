@@ -16,6 +16,7 @@ pub mod diff;
 pub mod drivers;
 pub mod edges;
 pub mod fingerprint;
+pub mod recorded_run;
 pub mod run_fingerprint;
 pub mod run_sink;
 pub mod stored_run;

@@ -87,6 +87,11 @@ pub fn name(bit: u32) -> Option<alloc::string::String> {
     }
 }
 
+/// Bit of a signal by its [`name`]; `None` if there is no such signal.
+pub fn bit(signal: &str) -> Option<u32> {
+    (0..Levels::SIGNALS).find(|&bit| name(bit).is_some_and(|own| own == signal))
+}
+
 /// The levels from a cycle on, until the next record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
@@ -274,8 +279,10 @@ mod tests {
             (35, Some("DE")),
             (36, None),
         ];
+        assert_eq!(super::bit("STEP16"), None);
         for (bit, expected) in rows {
             assert_eq!(name(bit).as_deref(), expected, "bit {bit}");
+            assert_eq!(expected.and_then(super::bit), expected.map(|_| bit), "bit {bit}");
         }
     }
 

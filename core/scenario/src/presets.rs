@@ -1,6 +1,7 @@
 //! Presets: experiments from the papers, shared by tests, command and page.
 
 use crate::Scenario;
+use alloc::{format, string::String, vec::Vec};
 
 /// A preset.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +28,17 @@ impl Preset {
 /// All presets, in the order of the command's list.
 pub fn all() -> impl Iterator<Item = &'static Preset> {
     [PRESETS, PLANT_PRESETS, CONTROLLER_PRESETS, CONTROLLER_PLANT_PRESETS].into_iter().flatten()
+}
+
+/// The preset of this name.
+///
+/// # Errors
+/// No such preset; the message lists all names.
+pub fn find(id: &str) -> Result<&'static Preset, String> {
+    all().find(|preset| preset.id == id).ok_or_else(|| {
+        let names: Vec<&str> = all().map(|preset| preset.id).collect();
+        format!("unknown preset {id:?}; use one of {}", names.join(", "))
+    })
 }
 
 /// What a preset is for: its group in the page's gallery.
@@ -141,7 +153,6 @@ presets! {
 mod tests {
     use super::*;
     use crate::{Kinds, VERSION};
-    use alloc::vec::Vec;
 
     #[test]
     fn every_kind_of_move_has_a_preset() {
@@ -151,6 +162,13 @@ mod tests {
             let key = alloc::format!("\"{kind}\": {{");
             assert!(PRESETS.iter().any(|preset| preset.json.contains(&key)), "{kind}");
         }
+    }
+
+    #[test]
+    fn a_preset_is_found_by_its_name() {
+        assert_eq!(find("points").map(|preset| preset.id), Ok("points"));
+        let why = find("point").expect_err("no such preset");
+        assert!(why.starts_with(r#"unknown preset "point"; use one of song-2021-one-turn, "#), "{why}");
     }
 
     #[test]

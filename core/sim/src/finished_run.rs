@@ -49,7 +49,8 @@ pub struct ControllerRun {
 pub fn run(scenario: &Scenario) -> Result<FinishedRun, Problems> {
     let experiment = Experiment::new(scenario)?;
     // Nothing stops it.
-    run_within(&experiment, Edges::Stored(MAX_RECORDS), |_| ControlFlow::Continue(()))?.ok_or_else(too_long)
+    run_within(&experiment, Edges::Stored(MAX_RECORDS), |_| ControlFlow::Continue(()))?
+        .ok_or_else(too_many_edges)
 }
 
 /// Runs an experiment to its end. Without `stores_edges` the traces are empty, and any number of edges is possible.
@@ -130,7 +131,7 @@ fn run_within(
     // Segments have a known number of steps; other edges are counted during the run.
     let steps = experiment.segments().map(|segments| segments.steps());
     if steps.is_some_and(|steps| steps > max_records / 2) {
-        return Err(too_long());
+        return Err(too_many_edges());
     }
     let recording =
         || Recording { trace: matches!(edges, Edges::Stored(_)).then(Vec::new), digest: Digest::default() };
@@ -150,12 +151,13 @@ fn run_within(
         let is_done = run.advance_observed::<_, ()>(limits, &mut recordings, &mut []);
         let records: u64 = recordings.iter().map(|recording| recording.digest.records()).sum();
         if records > max_records && !is_done {
-            return Err(too_long());
+            return Err(too_many_edges());
         }
     }
 }
 
-fn too_long() -> Problems {
+/// The problem of a run with more than [`MAX_RECORDS`] edges.
+pub fn too_many_edges() -> Problems {
     let detail =
         "the run has more than 48000000 edges; use a shorter motion, or an earlier end with run_cycles";
     Problem::new("source", ValueError::Conflict { detail }).into()
@@ -336,11 +338,11 @@ mod tests {
         );
         let motion = motion.expect("it runs");
         assert!(stored(&motion, MAX_RECORDS).is_ok());
-        assert_eq!(stored(&motion, 100_000).err(), Some(too_long()));
+        assert_eq!(stored(&motion, 100_000).err(), Some(too_many_edges()));
         let segments = r#"{"source":{"segments":{"channels":[{"segments":[{"steps":{"count":1000}}]}]}}}"#;
         let segments = Experiment::from_json(segments).expect("it runs");
         assert!(stored(&segments, 2000).is_ok());
-        assert_eq!(stored(&segments, 1999).err(), Some(too_long()));
-        assert!(too_long().to_string().contains(&MAX_RECORDS.to_string()));
+        assert_eq!(stored(&segments, 1999).err(), Some(too_many_edges()));
+        assert!(too_many_edges().to_string().contains(&MAX_RECORDS.to_string()));
     }
 }

@@ -24,6 +24,7 @@ extern crate alloc;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod clocked_device;
 mod controller_plan;
 mod controllers;
 mod cost;
@@ -39,12 +40,14 @@ mod stand_alone;
 mod summary;
 mod validated;
 
+pub use clocked_device::{ClockedDevice, ClockedDeviceError};
 pub use controllers::RunLimits;
 pub use cost::{BUDGET_MOTOR_GRID_STEPS, BUDGET_RECORDS, Cost};
 pub use experiment::Experiment;
 pub use faults::{fault_sweep, power_cut};
 pub use finished_run::{
     ControllerRun, FinishedRun, MAX_RECORDS, axis_plan, planned_steps, run, run_watched, step_times,
+    too_many_edges,
 };
 pub use hosts::script::{replayed, scripted};
 pub use hosts::{framed_host, raw_host};

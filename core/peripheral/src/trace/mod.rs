@@ -32,9 +32,36 @@ pub fn levels_at(trace: &[Record], at: Instant) -> Levels {
     after.checked_sub(1).and_then(|index| trace.get(index)).map_or(Levels::RESET, |record| record.levels)
 }
 
+/// The level of signal `bit` in the first record, then each change, with its cycle.
+pub fn level_changes(trace: &[Record], bit: u32) -> impl Iterator<Item = (Instant, bool)> {
+    let mask = 1_u64.checked_shl(bit).unwrap_or(0);
+    let mut before = None;
+    trace.iter().filter_map(move |record| {
+        let level = record.levels.0 & mask != 0;
+        (before.replace(level) != Some(level)).then_some((record.cycle, level))
+    })
+}
+
 /// Bits of the signals in exports: STEP and DIR of each channel, then EN, RX, TX, DE.
 pub fn shown_signals(channels: u8) -> impl Iterator<Item = u32> {
     let channels = 0..u32::from(channels);
     let others = [Levels::EN, Levels::RX, Levels::TX, Levels::DE].map(u64::trailing_zeros);
     channels.flat_map(|channel| [channel, Levels::DIR_SHIFT + channel]).chain(others)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec::Vec;
+
+    #[test]
+    fn a_signal_has_its_first_level_and_its_changes() {
+        let trace = [(0, 0b01), (5, 0b11), (9, 0b01), (12, 0b00)];
+        let trace = trace.map(|(cycle, levels)| Record { cycle: Instant(cycle), levels: Levels(levels) });
+        let changes = |bit| level_changes(&trace, bit).map(|(at, level)| (at.0, level)).collect::<Vec<_>>();
+        assert_eq!(changes(0), [(0, true), (12, false)]);
+        assert_eq!(changes(1), [(0, false), (5, true), (9, false)]);
+        assert_eq!(changes(64), [(0, false)]);
+        assert_eq!(level_changes(&[], 0).next(), None);
+    }
 }

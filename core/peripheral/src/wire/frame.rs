@@ -43,6 +43,8 @@ pub const CRC_LEN: usize = 4;
 /// Minimum decoded bytes of a frame: address, kind and CRC.
 pub const MIN_DECODED: usize = 2 + CRC_LEN;
 pub const MAX_DECODED: usize = 600;
+/// Maximum bytes of a body.
+pub const MAX_BODY: usize = MAX_DECODED - MIN_DECODED;
 pub const STATUS_LEN: usize = 9;
 pub const POSITION_LEN: usize = 4;
 /// Bytes of an ACK on the wire, with COBS and delimiter; POSITIONS adds its counters.
@@ -162,6 +164,20 @@ pub fn emit(address: u8, kind: u8, body: &[u8]) -> Vec<u8> {
     let mut content = alloc::vec![address, kind];
     content.extend_from_slice(body);
     encode_frame(&content)
+}
+
+/// Decodes the bytes of one frame, as from [`emit`]; the delimiter may be missing. Returns address, kind and body; `None` if
+/// COBS or CRC are wrong, or if there is more than one frame.
+pub fn decode_frame(wire: &[u8]) -> Option<(u8, u8, Vec<u8>)> {
+    let bytes = wire.strip_suffix(&[DELIMITER]).unwrap_or(wire);
+    let mut deframer = Deframer::default();
+    if bytes.iter().any(|byte| deframer.byte(*byte).is_some()) {
+        return None;
+    }
+    match deframer.byte(DELIMITER) {
+        Some(Deframed::Frame(Frame { address, kind, body })) => Some((address, kind, body.to_vec())),
+        _ => None,
+    }
 }
 
 /// The body of a TICKS frame.
@@ -308,9 +324,24 @@ mod tests {
                 let body: Vec<u8> = (0..len).map(|i| if i % 97 == 5 { !fill } else { fill }).collect();
                 let wire = emit(7, 0x42, &body);
                 assert_eq!(wire.iter().filter(|&&byte| byte == DELIMITER).count(), 1);
-                assert_eq!(last(&mut deframer, &wire), Some((7, 0x42, body)), "{len} x {fill}");
+                let found = Some((7, 0x42, body));
+                assert_eq!(last(&mut deframer, &wire), found, "{len} x {fill}");
+                assert_eq!(decode_frame(&wire), found, "{len} x {fill}");
+                assert_eq!(decode_frame(&wire[..wire.len() - 1]), found, "{len} x {fill}");
+                assert_eq!(decode_frame(&[wire.clone(), wire].concat()), None, "{len} x {fill}");
             }
         }
+    }
+
+    #[test]
+    fn what_is_no_frame_is_not_decoded() {
+        let mut wire = emit(7, 4, &[1, 2, 3]);
+        assert_eq!(decode_frame(&[]), None);
+        assert_eq!(decode_frame(&[DELIMITER]), None);
+        assert_eq!(decode_frame(&wire[1..]), None);
+        wire[3] ^= 1;
+        assert_eq!(decode_frame(&wire), None);
+        assert_eq!(decode_frame(&[1; 1000]), None);
     }
 
     #[test]
