@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     /// Channel to compare, or to write with --steps
     #[arg(long, value_name = "K", default_value_t = 0, requires = "of_channel", value_parser = whole::<u8>(0..=15))]
     pub(super) channel: u8,
-    /// Step of the scenario's run, from 0, at which recording and run are aligned (default: the first common step)
+    /// Step of the run, from 0, that meets the recording (default: the first common step)
     #[arg(long, value_name = "STEP", requires = "against", value_parser = whole::<usize>(0..=u64::MAX))]
     pub(super) align: Option<usize>,
     /// Maximum error of a step or byte, in us (default: one cycle of the slower clock)
