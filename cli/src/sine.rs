@@ -9,10 +9,12 @@ use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use stepscope_core::inspect::motion::sine_optimum::{Freedom, MAX_SEGMENTS, optimum};
-use stepscope_core::inspect::motion::sine_polyline::{self, Bounds, Distinct, Measure, Row, swept};
+use stepscope_core::inspect::motion::sine_polyline::{
+    self, Bounds, Distinct, Distortion, Measure, Row, swept,
+};
 use stepscope_core::motion::curves::{Memory, Segment, SineSegments};
 use stepscope_core::motion::{Profile, moves::Move};
-use stepscope_core::scenario::{Problem, Scenario, Source, ValueError};
+use stepscope_core::scenario::{Analysis, Problem, Scenario, Source, ValueError};
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
@@ -92,15 +94,16 @@ impl Range {
     fn bounds(&self) -> Bounds {
         let sensor =
             self.sensor_hz.zip(self.period_s).map(|(sensor_hz, period_s)| sensor_hz.get() * period_s.get());
-        Bounds { order: self.common.order, sensor }
+        Bounds { order: self.common.max_harmonic, sensor }
     }
 }
 
 #[derive(Args)]
 pub(crate) struct Common {
     /// Highest harmonic included in the distortion
-    #[arg(long, value_name = "K", default_value = "399", value_parser = whole::<u16>(3..=9999))]
-    order: u16,
+    #[arg(long, alias = "order", value_name = "K", default_value_t = Analysis::default().max_harmonic,
+          value_parser = whole::<u16>(3..=9999))]
+    max_harmonic: u16,
     #[command(flatten)]
     written: Written,
 }
@@ -252,25 +255,20 @@ fn polylines(command: &'static str, range: &Range, rows: &[Row], out: &mut impl 
     if range.common.written.json.json {
         return table(command, "polylines", rows.iter().map(json_row)).write(out);
     }
-    let filtered = if range.sensor_hz.is_some() { ",thd_acceleration_filtered_percent" } else { "" };
-    writeln!(
-        out,
-        "d1,segments,thd_position_percent,thd_speed_percent,thd_acceleration_percent,euclidean_distance{filtered}"
-    )?;
+    let filtered = if range.sensor_hz.is_some() { ",acceleration_filtered_thd" } else { "" };
+    writeln!(out, "d1,segments,position_thd,speed_thd,acceleration_thd,euclidean_distance{filtered}")?;
     rows.iter().try_for_each(|row| print_row(row, out))
 }
 
 fn print_row(row: &Row, out: &mut impl Write) -> io::Result<()> {
-    let distortion = row.distortion;
-    let [position, speed, acceleration] =
-        [distortion.position, distortion.speed, distortion.acceleration].map(|ratio| ratio * 100.0);
+    let Distortion { position, speed, acceleration, acceleration_filtered } = row.distortion;
     write!(
         out,
-        "{},{},{position:.6},{speed:.6},{acceleration:.6},{:.9}",
+        "{},{},{position:.8},{speed:.8},{acceleration:.8},{:.9}",
         row.d1, row.segments, row.euclidean
     )?;
-    if let Some(filtered) = distortion.acceleration_filtered {
-        write!(out, ",{:.6}", filtered * 100.0)?;
+    if let Some(filtered) = acceleration_filtered {
+        write!(out, ",{filtered:.8}")?;
     }
     writeln!(out)
 }
@@ -280,28 +278,28 @@ fn json_row(row: &Row) -> Value {
     json!({
         "d1": row.d1,
         "segments": row.segments,
-        "thd_position_percent": 100.0 * distortion.position,
-        "thd_speed_percent": 100.0 * distortion.speed,
-        "thd_acceleration_percent": 100.0 * distortion.acceleration,
-        "thd_acceleration_filtered_percent": distortion.acceleration_filtered.map(|ratio| 100.0 * ratio),
+        "position_thd": distortion.position,
+        "speed_thd": distortion.speed,
+        "acceleration_thd": distortion.acceleration,
+        "acceleration_filtered_thd": distortion.acceleration_filtered,
         "euclidean_distance": row.euclidean,
     })
 }
 
 fn vertices(segments: usize, freedom: Freedom, common: &Common, out: &mut impl Write) -> io::Result<()> {
-    let found = optimum(segments, freedom, common.order)
+    let found = optimum(segments, freedom, common.max_harmonic)
         .ok_or_else(|| io::Error::other("no polyline has this number of segments"))?;
-    let percent = found.distortion.position * 100.0;
+    let distortion = found.distortion.position;
     if common.written.json.json {
         let rows = found.vertices.iter().enumerate().map(|(index, vertex)| {
             let angle_deg = vertex.angle.to_degrees();
-            json!({ "vertex": index, "angle_deg": angle_deg, "height": vertex.height, "thd_position_percent": percent })
+            json!({ "vertex": index, "angle_deg": angle_deg, "height": vertex.height, "position_thd": distortion })
         });
         return table("sine vertices", "vertices", rows).write(out);
     }
-    writeln!(out, "vertex,angle_deg,height,thd_position_percent")?;
+    writeln!(out, "vertex,angle_deg,height,position_thd")?;
     for (index, vertex) in found.vertices.iter().enumerate() {
-        writeln!(out, "{index},{:.9},{:.9},{percent:.6}", vertex.angle.to_degrees(), vertex.height)?;
+        writeln!(out, "{index},{:.9},{:.9},{distortion:.8}", vertex.angle.to_degrees(), vertex.height)?;
     }
     Ok(())
 }

@@ -26,7 +26,7 @@ pub(crate) fn tables(tables: Tables, summary: &Summary, first: usize) -> Tables 
         "cycles": summary.cycles.0,
         "clock_hz": summary.clock_hz,
         "length_s": summary.cycles.0 as f64 / f64::from(summary.clock_hz.max(1)),
-        "line_load_percent": summary.line_load.map(|load| 100.0 * load),
+        "line_load": summary.line_load,
     });
     let positions = numbered().flat_map(|(index, controller)| {
         let channels = controller.positions.iter().enumerate();
