@@ -16,6 +16,7 @@ pub mod diff;
 pub mod drivers;
 pub mod edges;
 pub mod fingerprint;
+#[cfg(feature = "std")]
 pub mod recorded_run;
 pub mod run_fingerprint;
 pub mod run_sink;
