@@ -18,8 +18,10 @@ use stepscope_core::sim::fault_sweep::{FaultSweep, Tally};
 const BATCH: u64 = 64;
 /// Seeds have 32 bits.
 const SEEDS: u64 = 1 << 32;
-/// Maximum number of seeds with errors per printed line; JSON has all.
+/// Maximum number of seeds with errors per printed line.
 const MAX_PRINTED: usize = 8;
+/// Maximum number of seeds with errors in JSON: 4 MB, however many seeds are run.
+const MAX_LISTED: usize = 1_000_000;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -80,7 +82,7 @@ impl Which {
 #[derive(Default)]
 struct Report {
     tally: Tally,
-    /// Seeds with errors, rising after the last [`Report::join`].
+    /// Seeds with errors, rising after the last [`Report::join`]; the lowest [`MAX_LISTED`].
     wrong: Vec<u32>,
 }
 
@@ -97,6 +99,7 @@ impl Report {
         self.wrong.append(&mut other.wrong);
         // Mostly rising already, which is fast.
         self.wrong.sort();
+        self.wrong.truncate(MAX_LISTED);
     }
 }
 
@@ -292,7 +295,7 @@ fn print(reports: &[(Protocol, Report)]) -> io::Result<()> {
     }
     for (protocol, report) in reports.iter().filter(|(_, report)| !report.wrong.is_empty()) {
         let seeds: Vec<String> = report.wrong.iter().take(MAX_PRINTED).map(u32::to_string).collect();
-        let more = if report.wrong.len() > seeds.len() { " …" } else { "" };
+        let more = if report.tally.wrong_seeds > seeds.len() as u64 { " …" } else { "" };
         writeln!(out, "{}: errors with seeds {}{more}", protocol_name(*protocol), seeds.join(" "))?;
     }
     Ok(())
