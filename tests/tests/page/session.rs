@@ -197,6 +197,8 @@ impl Session {
 
     /// Selects an option of the field of a path, like a user's click.
     pub(crate) async fn choose(&self, css: &str, value: &str) -> Result<()> {
+        // An added part has its fields after the page has drawn it.
+        self.until(&format!("document.querySelector({})", json!(css))).await?;
         self.find(css).await?.select_by_value(value).await.with_context(|| format!("{css} has no {value}"))
     }
 
